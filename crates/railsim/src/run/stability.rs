@@ -10,7 +10,7 @@ use crate::dynamics::VehicleSystem;
 use crate::dynamics::linearise::jacobian;
 use crate::dynamics::state::PAIR;
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{Integrator, System, ros2};
+use crate::integrator::{Integrator, ROS2_GAMMA, System};
 
 /// Growth per step (beyond the vehicle's own) that counts as unstable: it doubles an error in 700 steps.
 const TOLERATED_GROWTH: f64 = 1e-3;
@@ -114,7 +114,7 @@ fn radius(j: &DMatrix<f64>, a: &DMatrix<f64>, integrator: &Integrator, h: f64) -
             &one + &hj * (&one + &hj * (&one * 0.5 + &hj * (&one / 6.0 + &hj / 24.0)))
         }
         Integrator::Ros2 { .. } => {
-            let w = (&one - a * (ros2::GAMMA * h)).try_inverse()?;
+            let w = (&one - a * (ROS2_GAMMA * h)).try_inverse()?;
             let k1 = &w * &hj;
             let k2 = &w * (&hj * (&one + &k1) - &k1 * 2.0);
             &one + k1 * 1.5 + k2 * 0.5
