@@ -7,8 +7,8 @@ use railsim::dynamics::{Contact, Model, SpeedProgram, VehicleSystem};
 use railsim::error::KeyPath;
 use railsim::integrator::{Integrator, Stepper, System};
 use railsim::math::Vec3;
-use railsim::track::irregularity::DeviationField;
-use railsim::track::layout::{Layout, Segment};
+use railsim::track::DeviationField;
+use railsim::track::{Layout, Segment};
 
 const GRAVITY: f64 = 9.80665;
 

@@ -12,8 +12,8 @@ use railsim::error::KeyPath;
 use railsim::integrator::{Integrator, Stepper, System};
 use railsim::math::Vec3;
 use railsim::run::{Free, simulate};
-use railsim::track::irregularity::DeviationField;
-use railsim::track::layout::Layout;
+use railsim::track::DeviationField;
+use railsim::track::Layout;
 use serde_json::{Value, json};
 
 /// Klingel (VALIDATION: r0 0.46, l0 0.75, lambda 0.05): L = 2 pi sqrt(r0 l0 / lambda), here with the full contact:

@@ -10,8 +10,8 @@ use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::math::Vec3;
 use crate::schema::{Case, Track, Vehicle};
-use crate::track::irregularity::DeviationField;
-use crate::track::layout::Layout;
+use crate::track::DeviationField;
+use crate::track::Layout;
 
 /// Compiles a case.
 ///
@@ -43,6 +43,7 @@ pub fn model(case: &Case) -> Result<Model> {
     let deviation = DeviationField::new(
         &track.irregularity,
         track.length,
+        track.fade_start,
         track.fade_in,
         &KeyPath::of("track.irregularity"),
     )?;

@@ -9,8 +9,8 @@ use crate::dynamics::state::StateMap;
 use crate::error::Result;
 use crate::integrator::StiffBlock;
 use crate::math::Vec3;
-use crate::track::irregularity::DeviationField;
-use crate::track::layout::Layout;
+use crate::track::DeviationField;
+use crate::track::Layout;
 
 /// A connection between two bodies, by index (bodies, then wheelsets).
 #[derive(Debug, Clone)]

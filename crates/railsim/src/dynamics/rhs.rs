@@ -13,7 +13,7 @@ use crate::dynamics::state::StateMap;
 use crate::dynamics::stiff;
 use crate::integrator::{StiffBlock, System};
 use crate::math::Vec3;
-use crate::track::irregularity::Deviation;
+use crate::track::Deviation;
 
 /// Below this rolling speed (m/s) creepages are formed with it instead, so that standstill stays finite.
 pub const LEAST_ROLLING_SPEED: f64 = 0.1;

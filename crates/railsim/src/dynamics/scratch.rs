@@ -5,7 +5,7 @@ use crate::contact::creepage::PlacedContact;
 use crate::contact::geometry_table::ContactPoint;
 use crate::dynamics::model::Model;
 use crate::math::Vec3;
-use crate::track::irregularity::Deviation;
+use crate::track::Deviation;
 
 /// One contact with its forces. Written by the contact stage.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,7 @@
 //! Columns of samples, never filtered.
 
 use crate::contact::creep::Creepage;
+use crate::contact::geometry_table::Zone;
 use crate::dynamics::scratch::Wheel;
 use crate::dynamics::{Model, StateMap, VehicleSystem};
 use crate::run::channel::{Source, WheelQuantity, plan};
@@ -93,12 +94,12 @@ fn ratio(wheel: &Wheel) -> f64 {
 
 fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {
     use WheelQuantity as W;
-    let zone = |z: u8| {
+    let zone = |z: Zone| {
         wheel
             .contacts
             .iter()
             .flatten()
-            .filter(|c| c.geometry.is_some_and(|g| u8::from(g.zone != 0) == z))
+            .filter(|c| c.geometry.is_some_and(|g| g.zone == z))
             .map(|c| c.normal)
             .sum()
     };
@@ -109,8 +110,8 @@ fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {
         W::Y => wheel.Y,
         W::LV => ratio(wheel),
         W::Shift => wheel.shift,
-        W::NTread => zone(0),
-        W::NFlange => zone(1),
+        W::NTread => zone(Zone::Tread),
+        W::NFlange => zone(Zone::Flange),
         W::CreepX => creepage.xi,
         W::CreepY => creepage.eta,
         W::Spin => creepage.phi,
