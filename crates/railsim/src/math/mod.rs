@@ -1,5 +1,6 @@
 //! Mathematics without a rail word in it.
 
+pub mod elliptic;
 pub mod rotation;
 
 /// Column of three.
