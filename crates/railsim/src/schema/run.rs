@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::stand_in::{CreepLaw, Integrator};
+use crate::contact::creep::CreepLaw;
+use crate::integrator::Integrator;
 
 /// What is done with the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
