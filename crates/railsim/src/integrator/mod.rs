@@ -227,7 +227,9 @@ mod tests {
             assert!(text.contains(example.name()));
             assert_eq!(read(&text).unwrap(), example);
         }
-        assert!(read(r#"{"kind":"ros2","step":0.001,"gamma":1.0}"#).unwrap_err().to_string().contains("gamma"));
+        assert!(
+            read(r#"{"kind":"ros2","step":0.001,"gamma":1.0}"#).unwrap_err().to_string().contains("gamma")
+        );
         assert!(read(r#"{"kind":"euler","step":0.001}"#).unwrap_err().to_string().contains("heun"));
     }
 

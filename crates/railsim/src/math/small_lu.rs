@@ -96,9 +96,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn residual(n: usize, a: &[f64], x: &[f64], b: &[f64]) -> f64 {
-        (0..n)
-            .map(|i| ((0..n).map(|k| a[i * n + k] * x[k]).sum::<f64>() - b[i]).abs())
-            .fold(0.0, f64::max)
+        (0..n).map(|i| ((0..n).map(|k| a[i * n + k] * x[k]).sum::<f64>() - b[i]).abs()).fold(0.0, f64::max)
     }
 
     #[test]
