@@ -142,7 +142,7 @@ impl Integrator {
             return Vec::new();
         }
         let fault = Fault::new(at.key("step"), format!("{step} s"), format!("above 0, at most {MAX_STEP} s"));
-        vec![if step >= 0.1 && step <= 50.0 {
+        vec![if (0.1..=50.0).contains(&step) {
             fault.hint(format!("the step is in seconds: {step} ms is {}", step / 1000.0))
         } else {
             fault
