@@ -46,7 +46,7 @@ fn rolled(model: &Model, speed: f64) -> (Vec<f64>, SpeedProgram) {
     let mut system = VehicleSystem::new(model, program);
     let mut stepper = Stepper::new(&Integrator::Ros2 { step: 1e-3 }, x.len(), system.stiff_blocks());
     for i in 0..2000_u32 {
-        stepper.step(&mut system, f64::from(i) * 1e-3, &mut x, 1e-3);
+        let _ = stepper.step(&mut system, f64::from(i) * 1e-3, &mut x, 1e-3);
     }
     (x, SpeedProgram { s: program.s + 2.0 * speed, ..program })
 }
@@ -67,7 +67,7 @@ fn bench(c: &mut Criterion) {
             let mut y = x.clone();
             let mut n = 0_u32;
             b.iter(|| {
-                stepper.step(&mut system, f64::from(n) * h, &mut y, h);
+                let _ = stepper.step(&mut system, f64::from(n) * h, &mut y, h);
                 n += 1;
                 if n == 1000 {
                     y.copy_from_slice(&x);
@@ -87,7 +87,7 @@ fn bench(c: &mut Criterion) {
         let mut y = x.clone();
         let mut n = 0_u32;
         b.iter(|| {
-            stepper.step(&mut system, f64::from(n) * 1e-4, &mut y, 1e-4);
+            let _ = stepper.step(&mut system, f64::from(n) * 1e-4, &mut y, 1e-4);
             n += 1;
             if n == 1000 {
                 y.copy_from_slice(&x);

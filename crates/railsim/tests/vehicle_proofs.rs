@@ -84,7 +84,7 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
     let mut step = 0_u32;
     while x[0] < 60.0 {
         let (s, y) = (x[0], x[1]);
-        stepper.step(&mut system, f64::from(step) * h, &mut x, h);
+        let _ = stepper.step(&mut system, f64::from(step) * h, &mut x, h);
         step += 1;
         if y > 0.0 && x[1] <= 0.0 {
             crossings.push(s + (x[0] - s) * y / (y - x[1]));
@@ -144,7 +144,7 @@ fn energy_of_the_undamped_vehicle_on_rigid_frictionless_track_is_kept() {
     let mut exchanged = (f64::MAX, f64::MIN);
     let mut drift = 0.0_f64;
     for step in 0..20_000_u32 {
-        stepper.step(&mut system, f64::from(step) * h, &mut x, h);
+        let _ = stepper.step(&mut system, f64::from(step) * h, &mut x, h);
         if step % 50 == 0 {
             let t = f64::from(step + 1) * h;
             system.rhs(t, &x, &mut dx);
