@@ -142,7 +142,7 @@ impl Integrator {
             return Vec::new();
         }
         let fault = Fault::new(at.key("step"), format!("{step} s"), format!("above 0, at most {MAX_STEP} s"));
-        vec![if step >= 0.1 && step <= 50.0 {
+        vec![if (0.1..=50.0).contains(&step) {
             fault.hint(format!("the step is in seconds: {step} ms is {}", step / 1000.0))
         } else {
             fault
@@ -227,7 +227,9 @@ mod tests {
             assert!(text.contains(example.name()));
             assert_eq!(read(&text).unwrap(), example);
         }
-        assert!(read(r#"{"kind":"ros2","step":0.001,"gamma":1.0}"#).unwrap_err().to_string().contains("gamma"));
+        assert!(
+            read(r#"{"kind":"ros2","step":0.001,"gamma":1.0}"#).unwrap_err().to_string().contains("gamma")
+        );
         assert!(read(r#"{"kind":"euler","step":0.001}"#).unwrap_err().to_string().contains("heun"));
     }
 

@@ -74,18 +74,14 @@ impl SmallLu {
             b.swap(row, self.pivot[row]);
         }
         for row in 1..n {
-            let mut sum = b[row];
-            for k in 0..row {
-                sum -= self.a[row * n + k] * b[k];
-            }
-            b[row] = sum;
+            let lower = &self.a[row * n..row * n + row];
+            let sum: f64 = lower.iter().zip(&*b).map(|(a, x)| a * x).sum();
+            b[row] -= sum;
         }
         for row in (0..n).rev() {
-            let mut sum = b[row];
-            for k in row + 1..n {
-                sum -= self.a[row * n + k] * b[k];
-            }
-            b[row] = sum / self.a[row * n + row];
+            let upper = &self.a[row * n + row + 1..(row + 1) * n];
+            let sum: f64 = upper.iter().zip(&b[row + 1..]).map(|(a, x)| a * x).sum();
+            b[row] = (b[row] - sum) / self.a[row * n + row];
         }
     }
 }
@@ -96,9 +92,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn residual(n: usize, a: &[f64], x: &[f64], b: &[f64]) -> f64 {
-        (0..n)
-            .map(|i| ((0..n).map(|k| a[i * n + k] * x[k]).sum::<f64>() - b[i]).abs())
-            .fold(0.0, f64::max)
+        (0..n).map(|i| ((0..n).map(|k| a[i * n + k] * x[k]).sum::<f64>() - b[i]).abs()).fold(0.0, f64::max)
     }
 
     #[test]
