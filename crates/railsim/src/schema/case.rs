@@ -16,6 +16,8 @@ use super::vehicle::Vehicle;
 use crate::contact::creep::CreepLaw;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::Integrator;
+use crate::track::irregularity::Irregularity;
+use crate::track::{Layout, Segment};
 
 /// The version of the case format that this code reads.
 pub const FORMAT: u64 = 1;
@@ -184,6 +186,16 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
     }
     leaf(at("run", "integrator"), Integrator::faults, faults);
     leaf(at("run", "creep"), CreepLaw::faults, faults);
+    for node in at("track", "irregularity").into_iter().flat_map(Node::items) {
+        leaf(Some(node), Irregularity::faults, faults);
+    }
+    if let Some(node) = at("track", "layout")
+        && let Some(length) = at("track", "length").and_then(Node::number).filter(|length| *length > 0.0)
+        && let Some(segments) = check::read::<Vec<Segment>>(node, &mut Vec::new())
+        && let Err(Error::Input(own)) = Layout::new(&segments, length, &node.at)
+    {
+        faults.extend(own);
+    }
     let wheel = match at("run", "wheel_profile") {
         Some(node) => node.text().map(|name| (name, node.at.clone())),
         None => own_profile.map(|name| (name, KeyPath::of("vehicle.wheel_profile"))),

@@ -260,7 +260,8 @@ fn placeholders(node: &Node) -> BTreeSet<String> {
 fn refuse_placeholders(node: &mut Node, faults: &mut Vec<Fault>) {
     match &mut node.value {
         Value::Text(text) => {
-            if let Some(word) = words_in(text).next() {
+            let word = words_in(text).next().map(str::to_owned);
+            if let Some(word) = word {
                 let found = format!("the placeholder {{{word}}}");
                 faults.push(Fault::new(node.at.clone(), found, "placeholders in templates only"));
                 node.value = Value::Faulty;
