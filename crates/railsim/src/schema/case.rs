@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value as Json;
 
 use super::check::{self, unknown};
@@ -12,7 +13,11 @@ use super::node::{Node, Value, quoted};
 use super::run::Run;
 use super::track::Track;
 use super::vehicle::Vehicle;
+use crate::contact::creep::CreepLaw;
 use crate::error::{Error, Fault, KeyPath, Result};
+use crate::integrator::Integrator;
+use crate::track::irregularity::Irregularity;
+use crate::track::{Layout, Segment};
 
 /// The version of the case format that this code reads.
 pub const FORMAT: u64 = 1;
@@ -179,6 +184,18 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
     {
         steps(step, output, faults);
     }
+    leaf(at("run", "integrator"), Integrator::faults, faults);
+    leaf(at("run", "creep"), CreepLaw::faults, faults);
+    for node in at("track", "irregularity").into_iter().flat_map(Node::items) {
+        leaf(Some(node), Irregularity::faults, faults);
+    }
+    if let Some(node) = at("track", "layout")
+        && let Some(length) = at("track", "length").and_then(Node::number).filter(|length| *length > 0.0)
+        && let Some(segments) = check::read::<Vec<Segment>>(node, &mut Vec::new())
+        && let Err(Error::Input(own)) = Layout::new(&segments, length, &node.at)
+    {
+        faults.extend(own);
+    }
     let wheel = match at("run", "wheel_profile") {
         Some(node) => node.text().map(|name| (name, node.at.clone())),
         None => own_profile.map(|name| (name, KeyPath::of("vehicle.wheel_profile"))),
@@ -204,21 +221,28 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
 
 fn steps(step: &Node, output: &Node, faults: &mut Vec<Fault>) {
     let (Some(h), Some(dt)) = (step.number(), output.number()) else { return };
-    if h <= 0.0 {
-        faults.push(Fault::new(step.at.clone(), step.found(), "a number > 0 s"));
-        return;
-    }
-    if dt <= 0.0 {
-        return; // said by the schema
+    if h <= 0.0 || dt <= 0.0 {
+        return; // said by the integrator and by the schema
     }
     let ratio = dt / h;
     let whole = ratio.round();
     // Both are decimal fractions, so a true multiple is off by a few roundings.
     if whole < 1.0 || (ratio - whole).abs() > 1e-9 * whole {
         let allowed = format!("a whole multiple of run.integrator.step = {h} s");
-        let fault = Fault::new(output.at.clone(), output.found(), allowed);
-        let near = whole.max(1.0) * h;
-        faults.push(fault.hint(format!("{near} s is one")));
+        faults.push(Fault::new(output.at.clone(), output.found(), allowed));
+    }
+}
+
+/// The faults that a leaf finds in its own table. What it cannot even read is said by the structural check.
+fn leaf<T: JsonSchema + DeserializeOwned>(
+    node: Option<&Node>,
+    own: impl Fn(&T, &KeyPath) -> Vec<Fault>,
+    faults: &mut Vec<Fault>,
+) {
+    if let Some(node) = node
+        && let Some(value) = check::read::<T>(node, &mut Vec::new())
+    {
+        faults.extend(own(&value, &node.at));
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn schema_of<T: JsonSchema>() -> Json {
 pub(super) fn read<T: JsonSchema + DeserializeOwned>(node: &Node, faults: &mut Vec<Fault>) -> Option<T> {
     let before = faults.len();
     structure::<T>(node, faults);
-    if faults.len() > before {
+    if faults.len() > before || node.is_faulty() {
         return None;
     }
     match serde_path_to_error::deserialize::<_, T>(&node.to_json()) {
@@ -88,6 +88,9 @@ struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     fn check(&self, node: &Node, schema: &'a Json, faults: &mut Vec<Fault>) {
+        if matches!(node.value, Value::Faulty) {
+            return;
+        }
         let mut parts = Vec::new();
         if !self.parts(node, schema, &mut parts, faults, 0) {
             return;
@@ -112,7 +115,7 @@ impl<'a> Checker<'a> {
             }
             Value::List(items) => self.list(node, items, &parts, schema, faults),
             Value::Table(map) => self.table(node, map, &parts, faults),
-            Value::Null | Value::Bool(_) | Value::Text(_) => {}
+            Value::Null | Value::Bool(_) | Value::Text(_) | Value::Faulty => {}
         }
     }
 
@@ -179,6 +182,9 @@ impl<'a> Checker<'a> {
                 faults.push(Fault::new(node.at.key(key), "nothing", allowed));
                 return Choice::Done;
             };
+            if found.is_faulty() {
+                return Choice::Done;
+            }
             let word = found.text().unwrap_or_default();
             return match tagged.iter().find(|(_, w, _)| *w == word) {
                 Some((_, _, alternative)) => Choice::One(alternative),

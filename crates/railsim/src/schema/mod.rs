@@ -11,7 +11,6 @@ mod document;
 mod node;
 mod parameter;
 mod run;
-mod stand_in;
 mod template;
 mod toml_source;
 mod track;

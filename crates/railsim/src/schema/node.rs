@@ -29,6 +29,8 @@ pub(super) enum Value {
     Text(String),
     List(Vec<Node>),
     Table(BTreeMap<String, Node>),
+    /// Something whose fault has been said: no further check looks at it, and nothing is made of it.
+    Faulty,
 }
 
 impl Node {
@@ -52,7 +54,7 @@ impl Node {
     /// Plain JSON again, for serde.
     pub fn to_json(&self) -> serde_json::Value {
         match &self.value {
-            Value::Null => serde_json::Value::Null,
+            Value::Null | Value::Faulty => serde_json::Value::Null,
             Value::Bool(b) => serde_json::Value::Bool(*b),
             Value::Number(n) => serde_json::Value::Number(n.clone()),
             Value::Text(s) => serde_json::Value::String(s.clone()),
@@ -103,6 +105,16 @@ impl Node {
         }
     }
 
+    /// Whether anything in here has been found faulty already.
+    pub fn is_faulty(&self) -> bool {
+        match &self.value {
+            Value::Faulty => true,
+            Value::List(items) => items.iter().any(Self::is_faulty),
+            Value::Table(map) => map.values().any(Self::is_faulty),
+            _ => false,
+        }
+    }
+
     /// The deepest node that exists along `path` (keys and indices of the tree, not of the document).
     pub fn deepest(&self, path: &[Segment]) -> &Self {
         let mut node = self;
@@ -123,7 +135,7 @@ impl Node {
     /// What stands here, as a message shows it.
     pub fn found(&self) -> String {
         let text = match &self.value {
-            Value::Null => "null".to_owned(),
+            Value::Null | Value::Faulty => "null".to_owned(),
             Value::Bool(b) => b.to_string(),
             Value::Number(n) => n.to_string(),
             Value::Text(s) => quoted(s),

@@ -40,7 +40,11 @@ fn flatten_into(node: &Node, prefix: &str, named: &mut Named, faults: &mut Vec<F
                     ));
                 }
             }
-            _ => faults.push(Fault::new(item.at.clone(), item.found(), A_VALUE)),
+            _ => {
+                faults.push(Fault::new(item.at.clone(), item.found(), A_VALUE));
+                let known = Node { value: Value::Faulty, ..item.clone() };
+                named.insert(name, known);
+            }
         }
     }
 }
@@ -80,6 +84,8 @@ pub(super) fn override_with(parameters: &mut Named, other: &Named, faults: &mut 
     for (name, value) in other {
         if !parameters.contains_key(name) {
             faults.push(unknown_parameter(value.at.clone(), name, parameters));
+        } else if matches!(value.value, Value::Faulty) {
+            parameters.insert(name.clone(), value.clone());
         } else if !is_value(value) {
             faults.push(Fault::new(value.at.clone(), value.found(), A_VALUE));
         } else {
@@ -169,12 +175,14 @@ pub(super) fn resolve(
                     node.via = Some(text.clone());
                     node.value = Value::Number(n);
                 }
-                None if !known.contains_key(name) => {
-                    faults.push(unknown_parameter(node.at.clone(), name, known));
+                None => {
+                    if !known.contains_key(name) {
+                        faults.push(unknown_parameter(node.at.clone(), name, known));
+                    }
+                    node.value = Value::Faulty;
                 }
-                None => {}
             }
         }
-        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Faulty => {}
     }
 }

@@ -12,7 +12,7 @@ use serde_json::Number;
 use super::check::{self, unknown};
 use super::node::{Node, Value};
 use super::parameter::{self, Named};
-use crate::error::{Fault, KeyPath};
+use crate::error::Fault;
 
 /// The lists that a vehicle and a template hold, and which of their keys are positions.
 pub(super) const KINDS: [&str; 4] = ["body", "connection", "sensor", "wheelset"];
@@ -203,12 +203,8 @@ impl Expansion<'_> {
         let mut copy = element.clone();
         if let Some(words) = words {
             substitute(&mut copy, words);
-        } else if let Some((at, word)) = first_placeholder(&copy) {
-            faults.push(Fault::new(
-                at,
-                format!("the placeholder {{{word}}}"),
-                "placeholders in templates only",
-            ));
+        } else {
+            refuse_placeholders(&mut copy, faults);
         }
         parameter::resolve(&mut copy, self.numbers, self.known, faults);
         copy
@@ -254,26 +250,35 @@ fn shift_by(node: &mut Node, shift: [f64; 3], faults: &mut Vec<Fault>) {
 /// The placeholders in all texts below `node`.
 fn placeholders(node: &Node) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
-    visit(node, &mut |_, word| {
+    visit(node, &mut |word| {
         found.insert(word.to_owned());
     });
     found
 }
 
-fn first_placeholder(node: &Node) -> Option<(KeyPath, String)> {
-    let mut first = None;
-    visit(node, &mut |at, word| {
-        first.get_or_insert_with(|| (at.clone(), word.to_owned()));
-    });
-    first
+/// Outside templates a placeholder stands for nothing.
+fn refuse_placeholders(node: &mut Node, faults: &mut Vec<Fault>) {
+    match &mut node.value {
+        Value::Text(text) => {
+            let word = words_in(text).next().map(str::to_owned);
+            if let Some(word) = word {
+                let found = format!("the placeholder {{{word}}}");
+                faults.push(Fault::new(node.at.clone(), found, "placeholders in templates only"));
+                node.value = Value::Faulty;
+            }
+        }
+        Value::List(items) => items.iter_mut().for_each(|item| refuse_placeholders(item, faults)),
+        Value::Table(map) => map.values_mut().for_each(|item| refuse_placeholders(item, faults)),
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Faulty => {}
+    }
 }
 
-fn visit(node: &Node, act: &mut impl FnMut(&KeyPath, &str)) {
+fn visit(node: &Node, act: &mut impl FnMut(&str)) {
     match &node.value {
-        Value::Text(text) => words_in(text).for_each(|word| act(&node.at, word)),
+        Value::Text(text) => words_in(text).for_each(act),
         Value::List(items) => items.iter().for_each(|item| visit(item, act)),
         Value::Table(map) => map.values().for_each(|item| visit(item, act)),
-        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Faulty => {}
     }
 }
 
@@ -291,7 +296,7 @@ fn substitute(node: &mut Node, words: &BTreeMap<String, String>) {
         }
         Value::List(items) => items.iter_mut().for_each(|item| substitute(item, words)),
         Value::Table(map) => map.values_mut().for_each(|item| substitute(item, words)),
-        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Faulty => {}
     }
 }
 

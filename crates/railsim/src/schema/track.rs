@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::stand_in::{Irregularity, Segment};
+use crate::track::Segment;
+use crate::track::irregularity::Irregularity;
 
 /// The track under the vehicle.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]

@@ -140,6 +140,7 @@ pub(super) struct WrittenWheelset {
 
 /// What all connections have; the keys of the law stand beside it.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[schemars(extend("unevaluatedProperties" = false))] // serde cannot deny unknown keys beside a flattened law
 pub(super) struct WrittenConnection {
     /// Name.
     pub name: String,
