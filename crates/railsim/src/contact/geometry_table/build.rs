@@ -226,15 +226,15 @@ fn average(
             continue;
         }
         let y = t.y + offset;
-        let (Some(slope), Some(curvature)) = (rail.slope(y), rail.curvature(y)) else { continue };
+        let Some(local) = rail.local(y) else { continue };
         total += w;
         sum.share += w * station.chi[zone];
         sum.y_rail += w * y;
         sum.z_rail += w * (g + t.z);
         sum.y_wheel += w * station.y;
         sum.z_wheel += w * station.z;
-        sum.angle -= w * 0.5 * (t.direction + slope.atan());
-        sum.curvature += w * (curvature - station.curvature);
+        sum.angle -= w * 0.5 * (t.direction + local.direction);
+        sum.curvature += w * (local.curvature - station.curvature);
     }
     let scale = 1.0 / total;
     let width = total * SPACING;
