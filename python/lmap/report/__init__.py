@@ -7,5 +7,6 @@ from __future__ import annotations
 
 from lmap.report.document import document, to_json
 from lmap.report.junit import junit
+from lmap.report.page import write_report
 
-__all__ = ["document", "junit", "to_json"]
+__all__ = ["document", "junit", "to_json", "write_report"]

@@ -44,6 +44,11 @@ def percent(value: float | None) -> str:
     return f"{value:+.1f} %"
 
 
+def given(value: float | None, unit: str) -> str:
+    """A number that somebody else wrote, with the digits that they wrote, and its unit."""
+    return NOTHING if value is None else with_unit(f"{value:g}", unit)
+
+
 def with_unit(text: str, unit: str) -> str:
-    """A limit's text with the unit, where it has one."""
+    """A text with the unit, where it has one."""
     return text if not text or unit in ("", "1") else f"{text} {unit}"

@@ -19,7 +19,7 @@ from typing import Any
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
-from lmap.report.numbers import number, percent, quantity, signed, with_unit
+from lmap.report.numbers import given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import to_parquet
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 
@@ -136,7 +136,7 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
         assumed=criterion.source == words.ASSUMED,
         margin=signed(criterion.margin, unit),
         percent="" if criterion.margin_percent is None else percent(criterion.margin_percent),
-        published=quantity(criterion.published, unit),
+        published=given(criterion.published, unit),
         verdict=verdict,
         verdict_class=_class(verdict),
         signal=criterion.signal or ", ".join(criterion.signals),
@@ -155,7 +155,7 @@ def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
     from lmap.report.figures import FIGURES
     from lmap.report.figures.plot import plotly
 
-    shown = []
+    shown: list[dict[str, Any]] = []
     for figure in (figure for draw in FIGURES for figure in draw(spec)):
         views = [
             {

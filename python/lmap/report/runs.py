@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import polars as pl
+from typing import TYPE_CHECKING, Any
 
 from lmap.report.numbers import NOTHING, number
 from lmap.verdict import CaseResult
+
+if TYPE_CHECKING:
+    import polars as pl
 
 _CLOCKS = ("wall", "real_time", "elapsed", "seconds", "ns_per", "per_second")
 """Parts of names of statistics that a clock made: they differ from run to run."""
@@ -28,6 +29,9 @@ class RunFigures:
     step: str
     output_step: str
     ended: str
+    """In words: end of track, diverged."""
+    message: str
+    """Why it ended early."""
     complete: bool
     rows: int
 
@@ -50,17 +54,11 @@ def figures(case: CaseResult) -> RunFigures:
         scheme=str(integrator.get("kind", NOTHING)),
         step=_milliseconds(integrator.get("step")),
         output_step=_milliseconds(run.get("output_step")),
-        ended=ended(case),
+        ended=str(case.ended.get("kind", "unknown")).replace("_", " "),
+        message=str(case.ended.get("message") or ""),
         complete=case.complete,
         rows=case.frame.height,
     )
-
-
-def ended(case: CaseResult) -> str:
-    """How the run ended, in words."""
-    kind = str(case.ended.get("kind", "unknown")).replace("_", " ")
-    message = case.ended.get("message")
-    return f"{kind}: {message}" if message else kind
 
 
 def span(frame: pl.DataFrame, name: str) -> float | None:

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lmap.report import runs, words
-from lmap.report.numbers import number, percent, quantity, signed
+from lmap.report.numbers import given, number, percent, quantity, signed
 from lmap.verdict import Acceptance, CriterionVerdict, Outcome, SpecVerdict
 
 _STYLES = {
@@ -41,6 +41,7 @@ def _spec(spec: SpecVerdict, console: Console) -> None:
     console.print(title, highlight=False)
     for key, value in spec.overrides.items():
         _note("set", f"{key} = {value}", console)
+    console.print()
     if spec.criteria:
         console.print(_criteria(spec, wide=console.width >= _SIGNAL_COLUMNS))
     for name, reason in words.assumptions(spec):
@@ -48,9 +49,13 @@ def _spec(spec: SpecVerdict, console: Console) -> None:
     for name, message in words.messages(spec):
         _note("note", f"{name}: {message}", console)
     if spec.facts:
+        console.print()
         console.print(_facts(spec))
     if spec.cases:
+        console.print()
         console.print(_runs(spec))
+        _endings(spec, console)
+    console.print()
     _headline(f"{spec.id} {spec.title}", spec.outcome, words.headline(spec.criteria), console)
 
 
@@ -77,7 +82,7 @@ def _criteria(spec: SpecVerdict, *, wide: bool) -> Table:
             Text(quantity(criterion.value, criterion.unit)),
             Text(_limit(criterion)),
             Text(_margin(criterion)),
-            Text(number(criterion.published)),
+            Text(given(criterion.published, "")),
             Text(words.verdict(criterion), style=_STYLES[criterion.outcome] if criterion.judged else ""),
         ]
         grid.add_row(*cells)
@@ -108,7 +113,7 @@ def _facts(spec: SpecVerdict) -> Table:
 
 def _runs(spec: SpecVerdict) -> Table:
     grid = _grid()
-    for title in ("run", "distance", "simulated", "wall", "x real time", "scheme", "step", "ended"):
+    for title in ("run", "distance", "simulated", "wall", "real time", "scheme", "ended"):
         grid.add_column(title, overflow="fold")
     for case in spec.cases:
         run = runs.figures(case)
@@ -117,13 +122,21 @@ def _runs(spec: SpecVerdict) -> Table:
             run.distance,
             run.simulated,
             run.wall,
-            run.real_time_factor,
-            run.scheme,
-            run.step,
+            f"{run.real_time_factor} x",
+            f"{run.scheme} {run.step}",
             run.ended,
         )
         grid.add_row(*(Text(cell) for cell in cells))
     return grid
+
+
+def _endings(spec: SpecVerdict, console: Console) -> None:
+    """Why runs ended early, where no criterion has said it already."""
+    said = " ".join(message for _, message in words.messages(spec))
+    for case in spec.cases:
+        message = case.ended.get("message")
+        if not case.complete and message and str(message) not in said:
+            _note("run ended early", f"{case.label}: {message}", console)
 
 
 def _grid() -> Table:

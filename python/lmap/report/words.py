@@ -29,7 +29,7 @@ def verdict(criterion: CriterionVerdict) -> str:
 
 def headline(criteria: Iterable[CriterionVerdict]) -> str:
     """How many criteria passed or not, and which margin is the smallest."""
-    judged = [criterion for criterion in criteria if criterion.judged or criterion.outcome is not Outcome.PASS]
+    judged = [verdict for verdict in criteria if verdict.judged or verdict.outcome is not Outcome.PASS]
     if not judged:
         return "no criterion was judged"
     counts = Counter(criterion.outcome for criterion in judged)
@@ -73,9 +73,17 @@ def assumptions(spec: SpecVerdict) -> list[tuple[str, str]]:
 
 
 def messages(spec: SpecVerdict) -> list[tuple[str, str]]:
-    """What the criteria say for themselves, with the cases it concerns."""
-    cases: dict[tuple[str, str], list[str]] = {}
+    """What the criteria say for themselves, each thing once, with the criteria and cases it concerns."""
+    found: dict[str, list[CriterionVerdict]] = {}
     for criterion in spec.criteria:
         if criterion.message:
-            cases.setdefault((criterion.name, criterion.message), []).append(criterion.case)
-    return [(f"{name} ({', '.join(labels)})", message) for (name, message), labels in cases.items()]
+            found.setdefault(criterion.message, []).append(criterion)
+    return [(_concerned(spec, criteria), message) for message, criteria in found.items()]
+
+
+def _concerned(spec: SpecVerdict, criteria: list[CriterionVerdict]) -> str:
+    names = list(dict.fromkeys(criterion.name for criterion in criteria))
+    cases = list(dict.fromkeys(criterion.case for criterion in criteria))
+    every = {criterion.name for criterion in spec.criteria}
+    what = "every criterion" if len(names) > 1 and every == set(names) else ", ".join(names)
+    return f"{what} ({', '.join(cases)})"

@@ -13,7 +13,7 @@ from lmap.criteria import Stage, trace
 from lmap.errors import JudgementProblem
 from lmap.report.figures.envelope import Array
 from lmap.report.figures.plot import FAINT_BUCKETS, Curve, Figure, Mark, View, samples, shown, time
-from lmap.report.numbers import number, quantity, with_unit
+from lmap.report.numbers import given, number, quantity, with_unit
 from lmap.verdict import CaseResult, CriterionVerdict, Outcome, SpecVerdict
 
 WHOLE = "whole run"
@@ -60,8 +60,14 @@ def chain_text(verdict: CriterionVerdict) -> str:
 
 def _link_text(link: Mapping[str, Any]) -> str:
     name, parameters = next(iter(link.items()))
-    written = ", ".join(f"{key} {value}" for key, value in dict(parameters).items())
+    written = ", ".join(_parameter_text(key, value) for key, value in dict(parameters).items())
     return f"{name} ({written})" if written else str(name)
+
+
+def _parameter_text(key: str, value: object) -> str:
+    if isinstance(value, bool):
+        return key if value else f"not {key}"
+    return f"{key} {value:g}" if isinstance(value, float) else f"{key} {value}"
 
 
 def _severity(verdict: CriterionVerdict) -> tuple[int, float]:
@@ -152,7 +158,7 @@ def _curves(signal: str, stages: Sequence[Stage], unit: str, colour: int) -> lis
     curves.append(Curve(label, filtered.t, filtered.values, str(colour), unit, width=1.5))
     last = stages[-1]
     if last is not filtered:
-        curves.append(Curve(last.name.replace("_", " "), last.t, last.values, "statistic", unit, width=2.0))
+        curves.append(Curve(last.name.replace("_", " "), last.t, last.values, "statistic", unit, width=1.3))
     return curves
 
 
@@ -206,7 +212,7 @@ def _quantity(verdict: CriterionVerdict, unit: str) -> str:
 
 
 def _limits(verdict: CriterionVerdict) -> tuple[tuple[float, str], ...]:
-    return tuple((bound, f"limit {quantity(bound, verdict.unit)}") for bound in verdict.bounds)
+    return tuple((bound, f"limit {given(bound, verdict.unit)}") for bound in verdict.bounds)
 
 
 def _mark(verdict: CriterionVerdict, stages: Sequence[Stage]) -> Mark | None:
@@ -258,5 +264,5 @@ def _caption(verdict: CriterionVerdict) -> str:
         return verdict.message or ""
     text = f"{quantity(verdict.value, verdict.unit)} on {verdict.signal}"
     if verdict.published is not None:
-        text += f"; published: {quantity(verdict.published, verdict.unit)}"
+        text += f"; published: {given(verdict.published, verdict.unit)}"
     return text

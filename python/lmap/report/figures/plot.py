@@ -200,6 +200,7 @@ def _limit_label(value: float, label: str) -> dict[str, Any]:
         "xanchor": "left",
         "y": value,
         "yanchor": "bottom" if value >= 0.0 else "top",
+        "yshift": 2 if value >= 0.0 else -2,
         "text": _escape(label),
         "showarrow": False,
         "role": "limit",

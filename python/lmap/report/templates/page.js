@@ -70,7 +70,7 @@
       groups[key].traces.push(index);
     });
     box.textContent = "";
-    if (Object.keys(groups).length < 2) { return; }
+    if (Object.keys(groups).length < 2 || Object.keys(groups).length === view.layout.rows) { return; }
     Object.keys(groups).forEach(function (key) {
       var group = groups[key];
       var button = document.createElement("button");
