@@ -25,13 +25,15 @@ KeyPath = tuple[str | int, ...]
 
 
 def key_text(key: Sequence[str | int]) -> str:
-    """A key path as people write it: `criterion[1].chain[0].lowpass`."""
+    """A key path as people write it: `criterion[1].chain[0].lowpass`, `set."secondary.kz"`."""
     text = ""
     for step in key:
         if isinstance(step, int):
             text += f"[{step}]"
+        elif not text:
+            text = step
         else:
-            text += f".{step}" if text else step
+            text += f'."{step}"' if "." in step else f".{step}"
     return text
 
 
@@ -135,7 +137,12 @@ def problems_of_validation(
         elif kind == "missing":
             found, allowed = "nothing", "a value: the key is required"
         elif kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
-            sign = {"greater_than": ">", "greater_than_equal": ">=", "less_than": "<", "less_than_equal": "<="}[kind]
+            sign = {
+                "greater_than": ">",
+                "greater_than_equal": ">=",
+                "less_than": "<",
+                "less_than_equal": "<=",
+            }[kind]
             limit = context.get("gt", context.get("ge", context.get("lt", context.get("le"))))
             allowed = f"a number {sign} {limit:g}" if isinstance(limit, int | float) else allowed
         else:
@@ -169,5 +176,7 @@ def _shown(value: object) -> str:
     if isinstance(value, Mapping):
         return f"a table with {listed(map(str, value), 6)}" if value else "an empty table"
     if isinstance(value, list | tuple):
-        return f"a list of {len(value)}" if len(value) > 4 else f"[{', '.join(_shown(item) for item in value)}]"
+        return (
+            f"a list of {len(value)}" if len(value) > 4 else f"[{', '.join(_shown(item) for item in value)}]"
+        )
     return "nothing" if value is None else str(value)

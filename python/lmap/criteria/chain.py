@@ -17,12 +17,20 @@ from __future__ import annotations
 import fnmatch
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple, Self
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
 import polars as pl
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    ValidationError,
+    model_validator,
+)
 
 from lmap import signals
 from lmap.criteria import units
@@ -41,13 +49,23 @@ ASSUMED = "assumed"
 """A `source` that says: no public source gives this limit, `reason` says why it was chosen."""
 
 
+def _listed_names(value: Any) -> Any:
+    """One name is a list of one."""
+    return [value] if isinstance(value, str) else value
+
+
+def _by_label(value: Any) -> Any:
+    """One figure is the figure of every case."""
+    return {"": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
 class Criterion(BaseModel):
     """One `[[criterion]]` table."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: str = Field(min_length=1)
-    signal: str | list[str]
+    signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
     unit: str
     max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
@@ -57,8 +75,8 @@ class Criterion(BaseModel):
     """Whether reaching the limit fails."""
     source: str = Field(min_length=1)
     reason: str | None = None
-    published: FiniteFloat | dict[str, FiniteFloat] | None = None
-    """Printed by the source: one figure, or one by case label."""
+    published: Annotated[dict[str, FiniteFloat], BeforeValidator(_by_label)] = Field(default_factory=dict)
+    """Printed by the source: one figure for all cases (key ""), or one by case label."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -69,11 +87,6 @@ class Criterion(BaseModel):
         if self.source == ASSUMED and not self.reason:
             raise ValueError('a reason where the source is "assumed"')
         return self
-
-    @property
-    def patterns(self) -> list[str]:
-        """The signals as written, always a list."""
-        return [self.signal] if isinstance(self.signal, str) else self.signal
 
     @property
     def bounds(self) -> tuple[float, ...]:
@@ -118,9 +131,7 @@ class Criterion(BaseModel):
 
     def published_for(self, label: str) -> float | None:
         """The printed figure for a case."""
-        if isinstance(self.published, dict):
-            return self.published.get(label)
-        return self.published
+        return self.published.get(label, self.published.get(""))
 
     def links(self) -> list[Link]:
         """The chain's links; a chain with faults raises pydantic's error or a `KeyError` (see `chain_problems`)."""
@@ -164,7 +175,9 @@ def chain_problems(criterion: Criterion) -> list[Problem]:
             if last and not isinstance(link, Statistic):
                 statistics = [name for name, kind in signals.BY_NAME.items() if issubclass(kind, Statistic)]
                 allowed = f"a statistic at the end: {listed(statistics, 30)}"
-                problems.append(Problem(found=f"the filter {link.name}", allowed=allowed, key=("chain", position)))
+                problems.append(
+                    Problem(found=f"the filter {link.name}", allowed=allowed, key=("chain", position))
+                )
             if not last and not isinstance(link, Filter):
                 allowed = "filters, with one statistic at the end"
                 problems.append(
@@ -196,8 +209,8 @@ def signal_problems(criterion: Criterion, channels: Mapping[str, str]) -> list[P
     `channels` gives the unit by name.
     """
     problems: list[Problem] = []
-    for position, pattern in enumerate(criterion.patterns):
-        key: KeyPath = ("signal",) if isinstance(criterion.signal, str) else ("signal", position)
+    for position, pattern in enumerate(criterion.signal):
+        key: KeyPath = ("signal",) if len(criterion.signal) == 1 else ("signal", position)
         names = expand([pattern], channels)
         if not names:
             allowed = "a channel of the vehicle (`lmap channels VEHICLE` lists them)"
@@ -208,8 +221,6 @@ def signal_problems(criterion: Criterion, channels: Mapping[str, str]) -> list[P
                 allowed = f"a unit of {name}: {listed(units.comparable(channels[name]))}"
                 problems.append(Problem(found=f'"{criterion.unit}"', allowed=allowed, key=("unit",)))
                 break
-    if not criterion.patterns:
-        problems.append(Problem(found="an empty list", allowed="at least one channel", key=("signal",)))
     return problems
 
 
@@ -288,8 +299,8 @@ def judge(
     `ended` says why a run ended before it should have: then nothing can be judged. A missing signal, a NaN, an empty
     window or a unit that does not compare is an error, never a pass.
     """
-    names = expand(criterion.patterns, frame.columns)
-    missing = [pattern for pattern in criterion.patterns if not expand([pattern], frame.columns)]
+    names = expand(criterion.signal, frame.columns)
+    missing = [pattern for pattern in criterion.signal if not expand([pattern], frame.columns)]
     readings: list[tuple[str, Reading]] = []
     message = ended
     if message is None and missing:

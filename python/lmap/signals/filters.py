@@ -48,7 +48,9 @@ class Lowpass(Filter):
         raised = 1.0 / (math.sqrt(2.0) - 1.0) ** (1.0 / self.order) if self.zero_phase else 1.0
         corner = rate / math.pi * math.atan(raised * math.tan(math.pi * self.cutoff_hz / rate))
         if not self.cutoff_hz < corner * 1.000001 < rate / 2.0:
-            raise JudgementProblem(f"a cut-off of {self.cutoff_hz:g} Hz is too high for {rate:.4g} samples per second")
+            raise JudgementProblem(
+                f"a cut-off of {self.cutoff_hz:g} Hz is too high for {rate:.4g} samples per second"
+            )
         values = signal.get_column("x").to_numpy()
         poles = self.order // 2 if self.zero_phase else self.order
         sections = butter(poles, corner, btype="low", output="sos", fs=rate)
@@ -87,7 +89,8 @@ class Skip(Filter):
     def apply(self, signal: pl.DataFrame) -> pl.DataFrame:
         """What comes after; nothing left is an error."""
         rest = signal.filter(
-            pl.col("t") - pl.col("t").first() >= self.start_s, pl.col("s") - pl.col("s").first() >= self.start_m
+            pl.col("t") - pl.col("t").first() >= self.start_s,
+            pl.col("s") - pl.col("s").first() >= self.start_m,
         )
         if rest.is_empty():
             raise JudgementProblem("nothing is left after the part that is skipped")

@@ -28,7 +28,9 @@ def slide(
     span = float(column[-1]) - float(column[0])
     ticks = round(length * _TICKS)
     if round(span * _TICKS) < ticks:
-        raise JudgementProblem(f"the record of {span:.4g} {unit} is shorter than the window of {length:g} {unit}")
+        raise JudgementProblem(
+            f"the record of {span:.4g} {unit} is shorter than the window of {length:g} {unit}"
+        )
     other = "s" if over == "t" else "t"
     rolling = {
         "min": pl.col("x").rolling_min_by("tick", f"{ticks}i", closed="both"),
