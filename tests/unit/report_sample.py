@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -137,22 +138,26 @@ def acceptance(*specs: SpecVerdict) -> Acceptance:
     return Acceptance(specs=specs, version="0.1.0", core="0.1.0+abcdef", wall_s=2.5)
 
 
+@cache
 def passing() -> Acceptance:
     """Two cases, everything passes."""
     return acceptance(judged(case("anzr1_worn_1"), case("anzr1_worn_2", seed=2, scale=1.1)))
 
 
+@cache
 def failing() -> Acceptance:
     """One case that hunts."""
     return acceptance(judged(case("anzr1_worn_2", seed=2, scale=12.0)))
 
 
+@cache
 def diverged() -> Acceptance:
     """A run that ended after 3 s."""
     end = {"kind": "diverged", "t": 3.0, "s": 105.0, "message": "diverged at t = 3 s: ws1 left the track"}
     return acceptance(judged(case("anzr1_worn_1", duration=3.0, ended=end)))
 
 
+@cache
 def waiting(outcome: Outcome) -> Acceptance:
     """A criterion that nothing measured can judge."""
     spec = judged(case("anzr1_worn_1"))

@@ -1,7 +1,7 @@
 """The check as one JSON object: `lmap check --json` and `verdicts.json` in a report folder.
 
-Only what the same input gives again goes in: no clock, no wall time, no NaN (null stands for a number that is not
-there).
+Only what the same input gives again goes in: no clock, no wall time, no NaN (null stands for a number that is
+not there).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def dumps(value: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """The value as JSON knows it: numbers that are not finite become null, mappings and sequences are copied."""
+    """The value as JSON knows it, copied; numbers that are not finite become null."""
     match value:
         case bool() | None | int():
             return value

@@ -12,7 +12,7 @@ _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]
 
 
 def junit(acceptance: Acceptance) -> str:
-    """The whole file. Failures are `failure`, what could not be judged is `error`, what waits is `skipped`."""
+    """The whole file. A fail is a `failure`, what could not be judged an `error`, what waits `skipped`."""
     root = ElementTree.Element("testsuites", name="lmap check")
     suites = [_suite(spec) for spec in acceptance.specs]
     for key in ("tests", "failures", "errors", "skipped"):
@@ -63,7 +63,9 @@ def _summary(criterion: CriterionVerdict) -> str:
         parts.append(f"on {criterion.signal}")
     if criterion.limit:
         parts.append(f"limit {with_unit(criterion.limit, criterion.unit)}")
-        parts.append(f"margin {signed(criterion.margin, criterion.unit)} ({percent(criterion.margin_percent)})")
+        parts.append(
+            f"margin {signed(criterion.margin, criterion.unit)} ({percent(criterion.margin_percent)})"
+        )
     else:
         parts.append("no limit: printed, not judged")
     parts.append(f"source {criterion.source}")

@@ -1,9 +1,9 @@
-"""The report folder: one self-contained page, the verdicts as JSON and JUnit XML, every case as JSON and parquet.
+"""The report folder: one self-contained page, the verdicts as JSON and JUnit XML, every case and its frame.
 
     out/index.html  verdicts.json  junit.xml  cases/<hash>.json  cases/<hash>.parquet
 
-The page works without a network: plotly.js, style and data are inside. Each file is written under a temporary name and
-then renamed, so that a reader never meets half a file; `verdicts.json` comes last.
+The page works without a network: plotly.js, style and data are inside. Each file is written under a temporary
+name and then renamed, so that a reader never meets half a file; `verdicts.json` comes last.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
-from lmap.report.numbers import given, number, percent, quantity, signed, with_unit
+from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import to_parquet
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 
@@ -47,7 +47,9 @@ def render(acceptance: Acceptance) -> str:
     from markupsafe import Markup
 
     templates = resources.files("lmap.report") / "templates"
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
     return template.render(
         page=_page(acceptance),
@@ -88,11 +90,14 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "headline": words.headline(words.all_criteria(acceptance)),
         "version": acceptance.version,
         "core": acceptance.core,
-        "specs": [_spec(position, spec) for position, spec in enumerate(acceptance.specs)],
+        "specs": [
+            _spec(position, spec, alone=len(acceptance.specs) == 1)
+            for position, spec in enumerate(acceptance.specs)
+        ],
     }
 
 
-def _spec(position: int, spec: SpecVerdict) -> dict[str, Any]:
+def _spec(position: int, spec: SpecVerdict, *, alone: bool) -> dict[str, Any]:
     return {
         "anchor": f"spec-{position}",
         "id": spec.id,
@@ -103,7 +108,8 @@ def _spec(position: int, spec: SpecVerdict) -> dict[str, Any]:
         "condition": spec.condition,
         "verdict": words.VERDICTS[spec.outcome],
         "verdict_class": _class(str(spec.outcome)),
-        "headline": _sentence(words.headline(spec.criteria)),
+        # With one spec the page's head has said it.
+        "headline": "" if alone else f"{_sentence(words.headline(spec.criteria))}.",
         "criteria": _rows(spec),
         "messages": words.messages(spec),
         "assumptions": words.assumptions(spec),
@@ -139,7 +145,7 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
         published=given(criterion.published, unit),
         verdict=verdict,
         verdict_class=_class(verdict),
-        signal=criterion.signal or ", ".join(criterion.signals),
+        signal=criterion.signal or NOTHING,
         place=_place(criterion.at),
         source=criterion.source,
     )

@@ -31,7 +31,11 @@ def table(acceptance: Acceptance, console: Console) -> None:
         _spec(spec, console)
     if len(acceptance.specs) > 1:
         _headline(
-            "all specs", acceptance.outcome, words.headline(words.all_criteria(acceptance)), console, blank=False
+            "all specs",
+            acceptance.outcome,
+            words.headline(words.all_criteria(acceptance)),
+            console,
+            blank=False,
         )
 
 
@@ -107,7 +111,9 @@ def _facts(spec: SpecVerdict) -> Table:
     for title in ("shown beside", "case", "value", "paper"):
         grid.add_column(title, overflow="fold")
     for fact in spec.facts:
-        grid.add_row(Text(fact.name), Text(fact.case or "all"), Text(fact.value), Text(fact.published or number(None)))
+        grid.add_row(
+            Text(fact.name), Text(fact.case or "all"), Text(fact.value), Text(fact.published or number(None))
+        )
     return grid
 
 

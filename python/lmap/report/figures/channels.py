@@ -13,7 +13,11 @@ Rows = Mapping[str, Sequence[str]]
 
 def stacked(spec: SpecVerdict, title: str, caption: str, rows: Mapping[str, Rows]) -> list[Figure]:
     """A figure whose views are the cases with rows (`rows` is by hash); none where no case has any."""
-    views = [_view(case, rows[case.hash]) for case in spec.cases if rows.get(case.hash) and "t" in samples(case).columns]
+    views = [
+        _view(case, rows[case.hash])
+        for case in spec.cases
+        if rows.get(case.hash) and "t" in samples(case).columns
+    ]
     return [Figure(title, caption, tuple(views))] if views else []
 
 
@@ -25,7 +29,7 @@ def _view(case: CaseResult, rows: Rows) -> View:
         unit = ""
         for channel in channels:
             values, unit = shown(case, channel)
-            # In a row of several curves the channels differ in their side; one colour and legend entry for each.
+            # In a row of several curves the channels differ in their side: a colour and a legend entry each.
             group = channel.split(".")[-2] if len(channels) > 1 else ""
             colour = colours.setdefault(group, str(len(colours) + 1))
             curves.append(Curve(channel, t, values, colour, unit, row=row, width=1.0, group=group or channel))

@@ -80,7 +80,9 @@ def _views(verdict: CriterionVerdict, case: CaseResult | None) -> list[View]:
     if case is None:
         if verdict.message is None and not verdict.signals:
             return []
-        return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")]
+        return [
+            View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")
+        ]
     if not verdict.signals:
         return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "no signal is read")]
     try:
@@ -147,12 +149,14 @@ def _stages(verdict: CriterionVerdict, case: CaseResult, signal: str) -> list[St
 
 
 def _curves(signal: str, stages: Sequence[Stage], unit: str, colour: int) -> list[Curve]:
-    """The signal as recorded (grey and thin, where a filter follows), as filtered, and the statistic's curve."""
+    """The signal as recorded (grey and thin, where a filter follows), as filtered, the statistic's curve."""
     filtered = _filtered(stages)
     curves = []
     if filtered is not stages[0]:
         curves.append(
-            Curve(f"{signal}, unfiltered", stages[0].t, stages[0].values, "raw", unit, width=0.7, dash="solid")
+            Curve(
+                f"{signal}, unfiltered", stages[0].t, stages[0].values, "raw", unit, width=0.7, dash="solid"
+            )
         )
     label = f"{signal}, {filtered.name}" if filtered is not stages[0] else signal
     curves.append(Curve(label, filtered.t, filtered.values, str(colour), unit, width=1.5))

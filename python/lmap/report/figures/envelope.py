@@ -11,8 +11,8 @@ Array = npt.NDArray[np.float64]
 def envelope(t: Array, values: Array, buckets: int) -> tuple[Array, Array]:
     """The smallest and the largest sample of each of at most `buckets` equal stretches, in the order of time.
 
-    First and last sample stay as well. A record of up to `2 * buckets + 2` samples is returned as it is. Samples that
-    are not finite are passed over, unless a stretch holds no others: then the gap stays a gap.
+    First and last sample stay as well. A record of up to `2 * buckets + 2` samples is returned as it is.
+    Samples that are not finite are passed over, unless a stretch holds no others: then the gap stays a gap.
     """
     count = len(values)
     if count <= 2 * buckets + 2:

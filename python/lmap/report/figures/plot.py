@@ -1,7 +1,7 @@
 """What a figure is, and its form for plotly.js.
 
-A figure has views (one for each case, and for each stretch of the run); the page draws one of them at a time. Colours
-are roles here (`raw`, `1`, `limit`): the page gives them their value, light, dark or on paper.
+A figure has views (one for each case, and for each stretch of the run); the page draws one of them at a time.
+Colours are roles here (`raw`, `1`, `limit`): the page gives them their value, light, dark or on paper.
 """
 
 from __future__ import annotations
@@ -163,15 +163,16 @@ def plotly(view: View) -> dict[str, Any]:
 
 def _trace(curve: Curve) -> dict[str, Any]:
     t, values = envelope(curve.t, curve.values, curve.buckets)
+    name, unit = _escape(curve.name), _escape(curve.unit)
     trace: dict[str, Any] = {
         "type": "scatter",
         "mode": "lines",
-        "name": _escape(curve.name),
+        "name": name,
         "x": _packed(t),
         "y": _packed(values),
         "yaxis": _axis("y", curve.row),
         "line": {"width": curve.width, "dash": curve.dash},
-        "hovertemplate": f"%{{y:.4g}} {_escape(curve.unit)} at %{{x:.3f}} s<extra>{_escape(curve.name)}</extra>",
+        "hovertemplate": f"%{{y:.4g}} {unit} at %{{x:.3f}} s<extra>{name}</extra>",
         "meta": {"role": curve.role, "group": curve.group or curve.name},
         "visible": not curve.hidden,
     }

@@ -14,7 +14,7 @@ def draw(spec: SpecVerdict) -> list[Figure]:
         columns = set(samples(case).columns)
         rows[case.hash] = {f"{name} y": [f"{name}.y"] for name in wheelsets(case) if f"{name}.y" in columns}
     caption = (
-        "Lateral displacement of each wheelset from the design centre line of the track, positive to the right. "
+        "Lateral displacement of each wheelset from the design centre line, positive to the right. "
         "Hunting shows as an oscillation that does not die away."
     )
     return stacked(spec, "Lateral displacement of the wheelsets", caption, rows)

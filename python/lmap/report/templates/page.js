@@ -103,8 +103,8 @@
   // One view into a new box; returns the box.
   function show(figure, view, width, named) {
     var box = element("div", "view");
-    if (named) { box.appendChild(element("p", "name", view.case)); }
-    if (view.caption) { box.appendChild(element("p", "name", view.caption)); }
+    var name = [named ? view.case : "", view.caption].filter(Boolean).join(": ");
+    if (name) { box.appendChild(element("p", "name", name)); }
     if (view.message) { box.appendChild(element("p", "message", view.message)); }
     figure.views.appendChild(box);
     if (!view.data.length) { return box; }
