@@ -47,7 +47,7 @@ format: dev
 
 lint: dev
 	$(BIN)/ruff check .
-	cargo clippy --quiet --workspace --all-targets -- -D warnings
+	cargo clippy --quiet --locked --workspace --all-targets -- -D warnings
 
 types: dev
 	$(BIN)/mypy

@@ -147,8 +147,12 @@ def channels(case_json: str) -> list[tuple[str, str, str]]:
 def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
     """Smallest and largest `lateral`, `vertical`, `cross_level` and `gauge` deviation of a case's track, m."""
 
-def equivalent_conicity(case_json: str, amplitude: float) -> float:
-    """Equivalent conicity of a case's wheels on its rails at a lateral amplitude in metres (EN 15302)."""
+def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
+    """Equivalent conicity of a case's wheels on its rails at a lateral amplitude in metres (EN 15302).
+
+    `None` where there is no oscillation of this amplitude: the rolling radius difference does not restore, or the
+    wheel would leave the profiles.
+    """
 
 def run_cases(
     cases: Sequence[str],

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict};
 use serde_json::json;
 
-use crate::core::run::{Ended, Outcome};
 use crate::errors::InternalError;
+use railsim::run::{Ended, Outcome};
 
 /// One finished case: columns of floats of equal length, and how the run ended.
 #[pyclass(frozen, module = "lmap._railsim")]

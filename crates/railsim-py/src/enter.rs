@@ -14,10 +14,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
+use railsim::run::Control;
 use railsim::{Error, Result};
 use rayon::ThreadPoolBuilder;
 
-use crate::core::run::Control;
 use crate::errors::{Failure, InternalError};
 
 /// Time between two looks at signals and progress. Ctrl-C is to stop a run within a second; a terminal shows

@@ -43,8 +43,7 @@ impl Failure {
         let message = error.to_string();
         let made = match error {
             Error::Input(faults) => {
-                let faults: Vec<(Fault, Option<usize>)> = faults.into_iter().map(|f| (f, None)).collect();
-                return input_error(py, &message, &faults);
+                return input_error(py, &message, faults.into_iter().map(|fault| (None, fault)));
             }
             Error::NotConverged { what, iterations, residual, unit, worst } => {
                 let made = ConvergenceError::new_err(message);
@@ -87,12 +86,16 @@ fn attributes(
 }
 
 /// An `InputError` with its faults, each with its line where that is known.
-pub fn input_error(py: Python<'_>, message: &str, faults: &[(Fault, Option<usize>)]) -> PyErr {
+pub fn input_error(
+    py: Python<'_>,
+    message: &str,
+    faults: impl IntoIterator<Item = (Option<usize>, Fault)>,
+) -> PyErr {
     let error = InputError::new_err(message.to_owned());
     let set = || -> PyResult<()> {
         let list = PyList::empty(py);
-        for (fault, line) in faults {
-            list.append(fault_dict(py, fault, *line)?)?;
+        for (line, fault) in faults {
+            list.append(fault_dict(py, &fault, line)?)?;
         }
         error.value(py).setattr("faults", list)
     };

@@ -7,13 +7,10 @@ mod arrow;
 mod contact;
 mod enter;
 mod errors;
-mod fake;
 mod probe;
 mod run;
 mod toml;
 mod vehicle;
-
-use fake as core;
 
 /// The compiled module.
 #[pyo3::pymodule(name = "_railsim")]

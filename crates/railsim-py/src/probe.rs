@@ -5,10 +5,10 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use pyo3::prelude::*;
+use railsim::run::{Control, Ended, Outcome};
 use railsim::{Error, Fault, KeyPath, Result};
 use serde_json::json;
 
-use crate::core::run::{Control, Ended, Outcome};
 use crate::enter::enter;
 use crate::run::Callbacks;
 

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
 use pyo3::prelude::*;
+use railsim::KeyPath;
+use railsim::run::{self, Outcome};
+use railsim::schema::Case;
+use railsim::track::irregularity::DeviationField;
 
 use crate::arrow::Frame;
-use crate::core;
-use crate::core::run::Outcome;
-use crate::core::schema::Case;
 use crate::enter::{Finished, Listener, Progress, enter};
 use crate::errors::raise;
 
@@ -32,9 +33,9 @@ pub fn check_case(py: Python<'_>, case_json: &str) -> PyResult<()> {
 
 /// Name, unit and meaning of every channel.
 #[pyfunction]
-pub fn channels(py: Python<'_>, case_json: &str) -> PyResult<Vec<(String, String, String)>> {
+pub fn channels(py: Python<'_>, case_json: &str) -> PyResult<Vec<(String, &'static str, &'static str)>> {
     let case = read(py, case_json)?;
-    let channels = core::run::channels(&case).map_err(|e| raise(py, e))?;
+    let channels = run::channels(&case).map_err(|e| raise(py, e))?;
     Ok(channels.into_iter().map(|c| (c.name, c.unit, c.meaning)).collect())
 }
 
@@ -42,7 +43,13 @@ pub fn channels(py: Python<'_>, case_json: &str) -> PyResult<Vec<(String, String
 #[pyfunction]
 pub fn track_extremes(py: Python<'_>, case_json: &str) -> PyResult<BTreeMap<&'static str, (f64, f64)>> {
     let case = read(py, case_json)?;
-    let extremes = py.detach(|| core::track::extremes(&case)).map_err(|e| raise(py, e))?;
+    let extremes = py.detach(|| {
+        let track = &case.track;
+        let at = KeyPath::of("track.irregularity");
+        DeviationField::new(&track.irregularity, track.length, track.fade_start, track.fade_in, &at)
+            .map(|field| field.extremes())
+    });
+    let extremes = extremes.map_err(|e| raise(py, e))?;
     Ok(["lateral", "vertical", "cross_level", "gauge"].into_iter().zip(extremes).collect())
 }
 
@@ -59,7 +66,7 @@ pub fn run_cases(
         py,
         cases.len(),
         jobs,
-        |index, control| core::run::simulate(&Case::from_json(&cases[index])?, control),
+        |index, control| run::simulate(&Case::from_json(&cases[index])?, control),
         &mut Callbacks { on_progress, on_done },
     )
 }

@@ -2,7 +2,10 @@
 
 use pyo3::prelude::*;
 
-use crate::core::schema;
+use railsim::schema::resolve_summary;
+use railsim::{Error, Fault, KeyPath};
+use serde::de::DeserializeOwned;
+
 use crate::errors::raise;
 
 /// A vehicle document with its overrides applied, and what a procedure asks of it, as JSON.
@@ -14,5 +17,14 @@ pub fn vehicle_resolve(
     overrides_json: &str,
     condition: Option<&str>,
 ) -> PyResult<String> {
-    schema::resolve_vehicle(document_json, overrides_json, condition).map_err(|e| raise(py, e))
+    let resolve = || {
+        let (document, overrides) = (parse("vehicle", document_json)?, parse("set", overrides_json)?);
+        resolve_summary(&document, &overrides, condition).map(|summary| summary.to_string())
+    };
+    resolve().map_err(|e| raise(py, e))
+}
+
+fn parse<T: DeserializeOwned>(key: &str, text: &str) -> railsim::Result<T> {
+    let fault = |e: serde_json::Error| Fault::new(KeyPath::of(key), e.to_string(), "a JSON object");
+    serde_json::from_str(text).map_err(|e| Error::input(fault(e)))
 }

@@ -84,7 +84,9 @@ fn a_thrown_body_keeps_its_inertial_parabola_and_angular_momentum() {
         worst = worst.max((system.scratch.kinematics[0].pose.r - flight).norm());
     }
     let drift = (momentum(&system) - h0).norm() / h0.norm();
-    println!("largest departure from the parabola over 160 m: {worst:.3e} m; angular momentum drift {drift:.3e}");
+    println!(
+        "largest departure from the parabola over 160 m: {worst:.3e} m; angular momentum drift {drift:.3e}"
+    );
     // Segment joins have a jump in the rate of curvature: a few steps of a fourth-order scheme straddle it, each with
     // an error of order h^3 times the jump; 1e-7 m is a hundred times that.
     assert!(worst < 1e-7, "{worst}");
