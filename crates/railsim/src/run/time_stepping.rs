@@ -2,7 +2,7 @@
 
 use crate::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
 use crate::error::{Error, Result};
-use crate::integrator::{Stepper, System};
+use crate::integrator::{StepEnd, Stepper, System};
 use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
@@ -94,8 +94,16 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let mut output: u64 = 0;
     let ended = 'run: loop {
         for _ in 0..every {
-            stepper.step(&mut system, step as f64 * h, &mut x, h);
+            let end = stepper.step(&mut system, step as f64 * h, &mut x, h);
             step += 1;
+            if let StepEnd::Singular { block } = end {
+                break 'run Ended::Diverged(Error::Diverged {
+                    t: step as f64 * h,
+                    s: x[reference],
+                    body: model.wheelsets[block].body.name.clone(),
+                    cause: "the implicit step has no solution: a number that is not finite in wheel and track".into(),
+                });
+            }
             if let Err(error) = divergence::check(&mut system, step as f64 * h, &x) {
                 break 'run Ended::Diverged(error);
             }
