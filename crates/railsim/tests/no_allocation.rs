@@ -40,8 +40,7 @@ fn right_hand_side_and_step_allocate_nothing() {
     let model = compile::model(&common::case(&value)).unwrap();
     let mut x = equilibrium::solve(&model, 20.0, 35.0).unwrap();
     let mut dx = vec![0.0; x.len()];
-    let program =
-        SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 35.0, acceleration: 0.0 };
+    let program = SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 35.0, acceleration: 0.0 };
     let mut system = VehicleSystem::new(&model, program);
     for integrator in Integrator::examples() {
         let mut stepper = Stepper::new(&integrator, x.len(), system.stiff_blocks());

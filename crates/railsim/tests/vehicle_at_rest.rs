@@ -13,8 +13,7 @@ fn wheel_loads_sum_to_the_weight_and_are_equal_within_the_vehicle() {
     let case = common::case(&common::coco134());
     let model = compile::model(&case).unwrap();
     let x = equilibrium::solve(&model, 10.0, 0.0).unwrap();
-    let program =
-        SpeedProgram { s: equilibrium::reference_s(&model, 10.0), speed: 0.0, acceleration: 0.0 };
+    let program = SpeedProgram { s: equilibrium::reference_s(&model, 10.0), speed: 0.0, acceleration: 0.0 };
     let mut system = VehicleSystem::new(&model, program);
     system.creeping = false;
     let mut dx = vec![0.0; system.size()];

@@ -32,7 +32,8 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
     let wheel = Profile::new(&cone, ProfileKind::Wheel, &at).unwrap();
     let text = std::fs::read_to_string(common::models().join("profiles/as60.csv")).unwrap();
     let rail =
-        Profile::new(&railsim::contact::profile::read_csv(&text, "as60").unwrap(), ProfileKind::Rail, &at).unwrap();
+        Profile::new(&railsim::contact::profile::read_csv(&text, "as60").unwrap(), ProfileKind::Rail, &at)
+            .unwrap();
     let placement = Placement {
         gauge: 1.435,
         gauge_point_depth: 0.016,
@@ -92,7 +93,10 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
     }
     let measured = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
     let klingel = 2.0 * std::f64::consts::PI * (radius * half / conicity).sqrt();
-    println!("kinematic wavelength: {measured:.4} m, Klingel {klingel:.4} m ({:+.2} %)", 100.0 * (measured / klingel - 1.0));
+    println!(
+        "kinematic wavelength: {measured:.4} m, Klingel {klingel:.4} m ({:+.2} %)",
+        100.0 * (measured / klingel - 1.0)
+    );
     assert!((measured / klingel - 1.0).abs() < 0.01);
 }
 
@@ -151,7 +155,11 @@ fn energy_of_the_undamped_vehicle_on_rigid_frictionless_track_is_kept() {
             let kinetic: f64 = (0..model.count())
                 .map(|i| {
                     let body = model.rigid(i);
-                    railsim::body::rigid_body::kinetic_energy(&system.scratch.kinematics[i], body.mass, &body.inertia)
+                    railsim::body::rigid_body::kinetic_energy(
+                        &system.scratch.kinematics[i],
+                        body.mass,
+                        &body.inertia,
+                    )
                 })
                 .sum();
             exchanged = (exchanged.0.min(kinetic), exchanged.1.max(kinetic));
@@ -249,7 +257,10 @@ fn heun_and_ros2_agree_and_converge_with_order_two_on_the_vehicle() {
     let size = reference.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     for (kind, steps) in [("heun", [2.5e-4, 1.25e-4]), ("ros2", [1e-3, 5e-4])] {
         let (coarse, fine) = (error(kind, steps[0]), error(kind, steps[1]));
-        println!("{kind}: error of carbody.y {coarse:.2e} m at {} s, {fine:.2e} m at {} s, of {size:.2e} m", steps[0], steps[1]);
+        println!(
+            "{kind}: error of carbody.y {coarse:.2e} m at {} s, {fine:.2e} m at {} s, of {size:.2e} m",
+            steps[0], steps[1]
+        );
         assert!(coarse < 0.01 * size);
         // Order two would be 4; kinks of the contact table and of wheel slip cost some of it.
         assert!(coarse / fine > 2.0, "{kind}: {coarse} / {fine}");

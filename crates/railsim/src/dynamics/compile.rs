@@ -69,7 +69,11 @@ pub fn model(case: &Case) -> Result<Model> {
 pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
     let radius = case.vehicle.wheelsets.first();
     let Some(set) = radius else {
-        return Err(Error::input(Fault::new(KeyPath::of("vehicle.wheelset"), "none", "at least one wheelset")));
+        return Err(Error::input(Fault::new(
+            KeyPath::of("vehicle.wheelset"),
+            "none",
+            "at least one wheelset",
+        )));
     };
     if let Some(other) = case
         .vehicle

@@ -250,6 +250,8 @@ trait ArgMax {
 
 impl ArgMax for DVector<f64> {
     fn argmax_abs(&self) -> (usize, f64) {
-        self.iter().enumerate().fold((0, 0.0), |best, (i, v)| if v.abs() > best.1 { (i, v.abs()) } else { best })
+        self.iter()
+            .enumerate()
+            .fold((0, 0.0), |best, (i, v)| if v.abs() > best.1 { (i, v.abs()) } else { best })
     }
 }

@@ -38,7 +38,8 @@ pub fn solve(
         load[6 * i + 2] = body.mass * gravity;
     }
     for (link, _) in links.iter().zip(carries).filter(|(_, c)| **c) {
-        let k = nalgebra::Matrix3::from_diagonal(&link.law.nominal_stiffness(&between(bodies, wheelsets, link)));
+        let k =
+            nalgebra::Matrix3::from_diagonal(&link.law.nominal_stiffness(&between(bodies, wheelsets, link)));
         let ends = [(link.a, -motion(&link.mount.p_A)), (link.b, motion(&link.mount.p_B))];
         for (i, m_i) in &ends {
             for (j, m_j) in &ends {
@@ -55,16 +56,26 @@ pub fn solve(
     let svd = stiffness.clone().svd(true, true);
     let tolerance = svd.singular_values.max() * 1e-12;
     let u = svd.solve(&load, tolerance).map_err(|e| {
-        Error::input(Fault::new(KeyPath::of("vehicle.connection"), e.to_string(), "connections that carry the vehicle"))
+        Error::input(Fault::new(
+            KeyPath::of("vehicle.connection"),
+            e.to_string(),
+            "connections that carry the vehicle",
+        ))
     })?;
     let residual = &stiffness * &u - &load;
-    if let Some((i, body)) =
-        bodies.iter().enumerate().find(|(i, b)| residual.rows(6 * i, 6).amax() > 1e-6 * b.mass * gravity.max(1.0))
+    if let Some((i, body)) = bodies
+        .iter()
+        .enumerate()
+        .find(|(i, b)| residual.rows(6 * i, 6).amax() > 1e-6 * b.mass * gravity.max(1.0))
     {
         return Err(Error::input(
             Fault::new(
                 KeyPath::of("vehicle.connection"),
-                format!("body `{}` with {:.0} N that nothing carries", body.name, residual.rows(6 * i, 6).amax()),
+                format!(
+                    "body `{}` with {:.0} N that nothing carries",
+                    body.name,
+                    residual.rows(6 * i, 6).amax()
+                ),
                 "connections with `carries = true` that hold every body's weight",
             )
             .hint("mark the springs that stand under this body with `carries = true`"),

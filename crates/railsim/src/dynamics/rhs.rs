@@ -33,10 +33,7 @@ impl SpeedProgram {
     /// Place and speed at time `t`.
     #[must_use]
     pub fn at(&self, t: f64) -> (f64, f64) {
-        (
-            self.s + t * (self.speed + 0.5 * self.acceleration * t),
-            self.speed + self.acceleration * t,
-        )
+        (self.s + t * (self.speed + 0.5 * self.acceleration * t), self.speed + self.acceleration * t)
     }
 }
 
@@ -76,8 +73,10 @@ impl<'m> VehicleSystem<'m> {
             let frame = self.model.layout.frame(q[0]);
             let spins = i >= self.model.bodies.len();
             let k = kinematics(q, &x[self.map.u(i)], frame, spins, &mut dx[self.map.q(i)]);
-            self.scratch.wrench[i] =
-                Wrench { f: Vec3::new(0.0, 0.0, self.model.rigid(i).mass * self.model.gravity), m: Vec3::zeros() };
+            self.scratch.wrench[i] = Wrench {
+                f: Vec3::new(0.0, 0.0, self.model.rigid(i).mass * self.model.gravity),
+                m: Vec3::zeros(),
+            };
             self.scratch.kinematics[i] = k;
         }
     }
@@ -134,7 +133,8 @@ impl<'m> VehicleSystem<'m> {
                 };
                 for (slot, point) in found[..count].iter().enumerate() {
                     let placed = place(sigma, point, &rail, pose.yaw, set.radius, q, k, track, speed);
-                    let n = hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
+                    let n =
+                        hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
                     let normal = point.share * n.force;
                     let mut contact = ContactForce {
                         geometry: Some(*point),
@@ -167,7 +167,8 @@ impl<'m> VehicleSystem<'m> {
                 let pose = wheel_pose(sigma, q, k, set.tape_half_distance, set.radius, 0.0, &rail);
                 wheel.shift = pose.shift;
                 if pose.depth > 0.0 {
-                    let contact = textbook(book, sigma, &pose, set.radius, set.tape_half_distance, k, track, speed);
+                    let contact =
+                        textbook(book, sigma, &pose, set.radius, set.tape_half_distance, k, track, speed);
                     add(&mut wheel, 0, contact, sigma);
                 }
             }
@@ -280,8 +281,7 @@ fn textbook(
     let lever = k.R_TB * Vec3::new(0.0, sigma * half, radius + book.conicity * pose.shift);
     let w_T = k.R_TB * k.w_B;
     let slip = k.v_T + w_T.cross(&lever) - Vec3::new(0.0, track.vy, track.vz + sigma * half * track.vphi);
-    let creepage =
-        Creepage { xi: slip.x / speed, eta: sigma * slip.y / speed, phi: sigma * w_T.z / speed };
+    let creepage = Creepage { xi: slip.x / speed, eta: sigma * slip.y / speed, phi: sigma * w_T.z / speed };
     let rate = slip.z;
     let normal = (book.stiffness * pose.depth + book.damping * rate).max(0.0);
     ContactForce {

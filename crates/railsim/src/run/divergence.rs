@@ -26,12 +26,16 @@ pub fn check(system: &mut VehicleSystem<'_>, t: f64, x: &[f64]) -> Result<(), Er
         if q.iter().chain(u).any(|v| !v.is_finite()) {
             return diverged(
                 body.name.clone(),
-                "a number that is not finite: the integration left its stability limit; take a smaller step".into(),
+                "a number that is not finite: the integration left its stability limit; take a smaller step"
+                    .into(),
             );
         }
         let away = (q[coordinate::Y] - body.position.y).abs().max((q[coordinate::Z] - body.position.z).abs());
         if away > FARTHEST {
-            return diverged(body.name.clone(), format!("{away:.2} m away from its design position (limit {FARTHEST} m)"));
+            return diverged(
+                body.name.clone(),
+                format!("{away:.2} m away from its design position (limit {FARTHEST} m)"),
+            );
         }
         let turned = q[coordinate::PHI].abs().max(q[coordinate::PSI].abs());
         if turned > STEEPEST {
@@ -51,10 +55,14 @@ pub fn check(system: &mut VehicleSystem<'_>, t: f64, x: &[f64]) -> Result<(), Er
     }
     let limit = LARGEST_LOAD * model.mass() * model.gravity;
     for (set, wheels) in model.wheelsets.iter().zip(&system.scratch.wheels) {
-        if let Some(wheel) = wheels.iter().find(|w| w.Q.abs() > limit / (2.0 * model.wheelsets.len() as f64)) {
+        if let Some(wheel) = wheels.iter().find(|w| w.Q.abs() > limit / (2.0 * model.wheelsets.len() as f64))
+        {
             return diverged(
                 set.body.name.clone(),
-                format!("wheel force {:.0} kN, over {LARGEST_LOAD} static wheel loads: the integration blew up", wheel.Q / 1e3),
+                format!(
+                    "wheel force {:.0} kN, over {LARGEST_LOAD} static wheel loads: the integration blew up",
+                    wheel.Q / 1e3
+                ),
             );
         }
     }

@@ -110,9 +110,7 @@ fn radius(j: &DMatrix<f64>, a: &DMatrix<f64>, integrator: &Integrator, h: f64) -
     let hj = j * h;
     let step = match integrator {
         Integrator::Heun { .. } => &one + &hj + &hj * &hj * 0.5,
-        Integrator::Rk4 { .. } => {
-            &one + &hj * (&one + &hj * (&one * 0.5 + &hj * (&one / 6.0 + &hj / 24.0)))
-        }
+        Integrator::Rk4 { .. } => &one + &hj * (&one + &hj * (&one * 0.5 + &hj * (&one / 6.0 + &hj / 24.0))),
         Integrator::Ros2 { .. } => {
             let w = (&one - a * (ROS2_GAMMA * h)).lu().try_inverse()?;
             let k1 = &w * &hj;
