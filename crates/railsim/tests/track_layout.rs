@@ -279,6 +279,8 @@ fn all_faults_are_collected_with_their_keys() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     // Any two constant segments joined by a clothoid: unit direction, orthonormal axes, derivative = direction.
     #[test]
     fn derivative_is_the_direction(

@@ -1,5 +1,6 @@
 //! Mathematics without a rail word in it.
 
+pub mod angle;
 pub mod fft;
 pub mod hermite;
 pub mod quadrature;
