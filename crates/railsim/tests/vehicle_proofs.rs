@@ -189,6 +189,7 @@ fn rough(seed: u64) -> Value {
     value["track"]["irregularity"] = json!({
         "kind": "psd", "form": "fra_hamid_yang", "class": 6, "wavelengths": [1.5, 40.0], "seed": seed, "period": 1000.0
     });
+    value["track"]["fade_in"] = json!(30.0);
     value
 }
 
