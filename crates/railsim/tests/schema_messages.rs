@@ -130,14 +130,14 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "mass = \"$frame.mass\"",
         "mass = \"$frame.mas\"",
-        "28: vehicle.body[0].mass: found the unknown name frame.mas; allowed: a named parameter of \
-         the vehicle (did you mean frame.mass?)",
+        "28: vehicle.body[0].mass: found the unknown name frame.mas; allowed: a named parameter: \
+         frame.height, frame.mass (did you mean frame.mass?)",
     ),
     (
         "\"frame.mass\" = 600.0",
         "\"frame.weight\" = 600.0",
         "24: vehicle.condition.empty.frame.weight: found the unknown name frame.weight; allowed: a \
-         named parameter of the vehicle (did you mean frame.height?)",
+         named parameter: frame.height, frame.mass (did you mean frame.height?)",
     ),
     (
         "[parameters.frame]\nmass = 1000.0",
@@ -272,8 +272,10 @@ fn overridden(name: &str, value: Value, condition: Option<&str>) -> Vec<String> 
 fn an_override_of_what_is_no_parameter_is_refused_with_the_nearest_name() {
     assert_eq!(
         overridden("sprign.k", json!(1.0), None),
-        ["set.sprign.k: found the unknown name sprign.k; allowed: a named parameter of the vehicle \
-          (did you mean spring.k?)"]
+        [
+            "set.sprign.k: found the unknown name sprign.k; allowed: a named parameter, in axle, frame, spring \
+          (did you mean spring.k?)"
+        ]
     );
     assert_eq!(
         overridden("spring.k", json!("stiff"), None),
@@ -387,6 +389,42 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             json!("x"),
             "profiles.head.points[3][1]: found \"x\"; allowed: a number",
         ),
+        (
+            "/track/irregularity",
+            json!({ "kind": "psd", "form": "fra_hamid_yang", "class": 7, "wavelengths": [1.5, 40], "seed": 1, "period": 1000 }),
+            "track.irregularity.class: found 7; allowed: 1 (worst) to 6 (best)",
+        ),
+        (
+            "/track/irregularity",
+            json!([{ "kind": "psd", "form": "fra_hamid_yang", "clas": 6, "wavelengths": [1.5], "seed": 0.5, "period": 1000 }]),
+            "track.irregularity[0].clas: found an unknown key; allowed: class, form, gauge, kind, level, \
+         period, scale, seed, wavelengths (did you mean class?)\n\
+         track.irregularity[0].seed: found 0.5; allowed: a whole number >= 0\n\
+         track.irregularity[0].wavelengths: found a list of 1; allowed: a list of 2, each a number",
+        ),
+        (
+            "/track/irregularity",
+            json!({ "kind": "bump" }),
+            "track.irregularity.kind: found \"bump\"; allowed: \"psd\", \"shape\"",
+        ),
+        (
+            "/track/layout",
+            json!([{ "kind": "curve", "length": 50, "radius": 300, "cant": 20 }]),
+            "track.layout[0].cant: found an unknown key; allowed: cant_mm, curvature, gradient, kind, \
+         length, radius (did you mean cant_mm?)",
+        ),
+        (
+            "/track/layout",
+            json!([{ "kind": "tangent", "length": 0 }]),
+            "track.layout[0].length: found 0; allowed: above 0 m",
+        ),
+        (
+            "/track/fade_start",
+            json!(10),
+            "track.fade_in: found 0 m; allowed: above 0 m where fade_start is above 0 (the track would \
+         begin with a step)",
+        ),
+        ("/run/creep", json!({ "kind": "fastsim", "nx": 0 }), "run.creep.nx: found 0; allowed: 2 to 400"),
         ("/format", json!(2), "format: found 2; allowed: 1"),
         ("/label", json!(null), "label: found null; allowed: a text"),
         ("/vehicle/body/0/mass", json!(0), "vehicle.body[0].mass: found 0; allowed: a number > 0 kg"),
