@@ -94,8 +94,7 @@ impl ForceLaw for Bushing {
         let half = |pose: &Pose, v: &Vec3| {
             let d = pose.R.tr_mul(&D);
             let rate = pose.R.tr_mul(v);
-            0.5 * (pose.R
-                * (mount.preload - scale(&self.stiffness, &d) - scale(&self.damping, &rate)))
+            0.5 * (pose.R * (mount.preload - scale(&self.stiffness, &d) - scale(&self.damping, &rate)))
         };
         let f_A = half(a, &v_A); // written in A's axes, acts at B's point
         let f_B = half(b, &v_B); // written in B's axes, acts at A's point

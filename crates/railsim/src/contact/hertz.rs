@@ -39,7 +39,7 @@ fn curvature_ratio(k_complementary: f64) -> f64 {
 
 /// Axis ratio k' (shorter/longer, 0 < k' <= 1) of the ellipse for a curvature ratio rho >= 1 (larger/smaller).
 ///
-/// Newton in logarithms from k' = rho^(-2/3) (which is right to some 5 % everywhere), with the slope by a secant. Converged to 1e-14.
+/// Newton in logarithms from k' = rho^(-2/3) (which is right to some 5 % everywhere), with the slope by a secant. Converged to 1e-13.
 #[must_use]
 pub fn axis_ratio(rho: f64) -> f64 {
     if rho <= 1.0 {
@@ -50,7 +50,7 @@ pub fn axis_ratio(rho: f64) -> f64 {
     let mut previous: Option<(f64, f64)> = None;
     for _ in 0..40 {
         let residual = curvature_ratio(u.exp().min(1.0)).ln() - target;
-        if residual.abs() < 1e-14 {
+        if residual.abs() < 1e-13 {
             break;
         }
         // d ln(ratio)/d ln k' lies between -1.5 (circle) and -2 (slender): -1.7 starts the secant.
@@ -60,7 +60,7 @@ pub fn axis_ratio(rho: f64) -> f64 {
         };
         previous = Some((u, residual));
         let step = -residual / slope;
-        if step.abs() < 1e-15 {
+        if step.abs() < 1e-14 {
             break;
         }
         u = (u + step).min(0.0);

@@ -22,6 +22,7 @@ pub struct Coefficients {
 type Row = [[f64; 3]; 3];
 
 /// a/b = 0.1, 0.2 .. 1.0 (Kalker 1990, Table E.3).
+#[allow(clippy::approx_constant)] // 3.14 is a tabulated C22
 const NARROW: [Row; 10] = [
     [[2.51, 3.31, 4.85], [2.51, 2.52, 2.53], [0.334, 0.473, 0.731]],
     [[2.59, 3.37, 4.81], [2.59, 2.63, 2.66], [0.483, 0.603, 0.809]],

@@ -9,7 +9,10 @@
 
 pub mod conicity;
 pub mod creep;
+pub mod creepage;
 pub mod geometry_table;
 pub mod hertz;
 pub mod kalker_table;
+pub mod normal;
 pub mod profile;
+pub mod textbook;

@@ -140,7 +140,6 @@ struct Scratch {
     fine: Vec<(usize, f64)>,
 }
 
-#[allow(clippy::too_many_arguments)]
 fn node(
     rail: &Profile,
     stations: &[WheelStation],
@@ -154,7 +153,7 @@ fn node(
     scratch.coarse.extend(turned.iter().step_by(STRIDE).map(&gap));
     let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
     let mut values = [[0.0; 12]; 2];
-    for zone in 0..2 {
+    for (zone, out) in values.iter_mut().enumerate() {
         let supported = |k: usize| stations[k].chi[zone] > 0.0;
         let coarse_least = scratch
             .coarse
@@ -192,7 +191,7 @@ fn node(
         gaps.yaw[zone] = 0.5
             * (placement.wheel_radius + average.z_wheel)
             * average.angle.abs().min(STEEPEST_CONTACT).tan().powi(2);
-        values[zone] = average.values(placement);
+        *out = average.values(placement);
     }
     (gaps, values)
 }
@@ -227,15 +226,15 @@ fn average(
             continue;
         }
         let y = t.y + offset;
-        let (Some(slope), Some(curvature)) = (rail.slope(y), rail.curvature(y)) else { continue };
+        let Some(local) = rail.local(y) else { continue };
         total += w;
         sum.share += w * station.chi[zone];
         sum.y_rail += w * y;
         sum.z_rail += w * (g + t.z);
         sum.y_wheel += w * station.y;
         sum.z_wheel += w * station.z;
-        sum.angle -= w * 0.5 * (t.direction + slope.atan());
-        sum.curvature += w * (curvature - station.curvature);
+        sum.angle -= w * 0.5 * (t.direction + local.direction);
+        sum.curvature += w * (local.curvature - station.curvature);
     }
     let scale = 1.0 / total;
     let width = total * SPACING;

@@ -97,8 +97,9 @@ fn solve4(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
         }
         for r in i + 1..4 {
             let factor = m[r][i] / m[i][i];
-            for c in i..5 {
-                m[r][c] -= factor * m[i][c];
+            let row = m[i];
+            for (value, above) in m[r].iter_mut().zip(row).skip(i) {
+                *value -= factor * above;
             }
         }
     }

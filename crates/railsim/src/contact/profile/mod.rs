@@ -33,11 +33,21 @@ pub enum ProfileKind {
     Rail,
 }
 
-/// One cell of the lookup grid: z = c0 + t (c1 + t (c2 + t c3)), t in 0..1; curvature linear.
+/// One cell of the lookup grid: z = c0 + t (c1 + t (c2 + t c3)), t in 0..1; curvature and direction linear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
     c: [f64; 4],
     curvature: [f64; 2],
+    direction: [f64; 2],
+}
+
+/// A smoothed profile at one y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Local {
+    /// Direction of the tangent, rad.
+    pub direction: f64,
+    /// z''/(1 + z'^2)^1.5, 1/m.
+    pub curvature: f64,
 }
 
 /// A profile: its points and the smoothed curve through them.
@@ -136,6 +146,7 @@ impl Profile {
         (self.y_first, self.y_first + GRID * self.cells.len() as f64)
     }
 
+    #[inline]
     fn cell(&self, y: f64) -> Option<(&Cell, f64)> {
         let x = (y - self.y_first) * (1.0 / GRID);
         if x.is_nan() || x < 0.0 {
@@ -146,6 +157,7 @@ impl Profile {
     }
 
     /// z (m, down) at y; `None` outside [`Profile::range`].
+    #[inline]
     #[must_use]
     pub fn z(&self, y: f64) -> Option<f64> {
         self.cell(y).map(|(cell, t)| cell.c[0] + t * (cell.c[1] + t * (cell.c[2] + t * cell.c[3])))
@@ -164,12 +176,21 @@ impl Profile {
         self.cell(y).map(|(cell, t)| cell.curvature[0] + t * (cell.curvature[1] - cell.curvature[0]))
     }
 
+    /// Direction and curvature at y, in one lookup.
+    #[inline]
+    pub(crate) fn local(&self, y: f64) -> Option<Local> {
+        self.cell(y).map(|(cell, t)| Local {
+            direction: cell.direction[0] + t * (cell.direction[1] - cell.direction[0]),
+            curvature: cell.curvature[0] + t * (cell.curvature[1] - cell.curvature[0]),
+        })
+    }
+
     /// Lookup grid from the stations.
     fn tabulate(&mut self) {
         let s = &self.stations;
         self.y_first = s[0].y;
         let count = ((s[s.len() - 1].y - self.y_first) / GRID).floor() as usize;
-        let mut nodes = Vec::with_capacity(count + 1); // z, dz/dy, curvature
+        let mut nodes = Vec::with_capacity(count + 1); // z, dz/dy, curvature, direction
         let mut i = 0;
         for k in 0..=count {
             let y = self.y_first + GRID * k as f64;
@@ -188,16 +209,22 @@ impl Profile {
             let dz =
                 (6.0 * (t2 - t) * (p.z - q.z) + (3.0 * t2 - 4.0 * t + 1.0) * m0 + (3.0 * t2 - 2.0 * t) * m1)
                     / h;
-            nodes.push([z, dz, p.curvature + t * (q.curvature - p.curvature)]);
+            nodes.push([
+                z,
+                dz,
+                p.curvature + t * (q.curvature - p.curvature),
+                p.direction + t * (q.direction - p.direction),
+            ]);
         }
         self.cells = nodes
             .windows(2)
             .map(|w| {
-                let ([z0, d0, k0], [z1, d1, k1]) = (w[0], w[1]);
+                let ([z0, d0, k0, a0], [z1, d1, k1, a1]) = (w[0], w[1]);
                 let (m0, m1) = (d0 * GRID, d1 * GRID);
                 Cell {
                     c: [z0, m0, 3.0 * (z1 - z0) - 2.0 * m0 - m1, 2.0 * (z0 - z1) + m0 + m1],
                     curvature: [k0, k1],
+                    direction: [a0, a1],
                 }
             })
             .collect();

@@ -1,0 +1,5 @@
+"""`python -m lmap` is `lmap`."""
+
+from lmap.cli.app import main
+
+main()

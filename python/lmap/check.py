@@ -1,0 +1,235 @@
+"""The one line: specs -> cases -> frames -> verdicts -> report."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lmap import files
+from lmap.errors import InputProblem, Problem, listed, nearest_hint
+from lmap.verdict import Acceptance, CaseResult, Outcome, SpecVerdict
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from lmap.execute.local import CaseOutcome
+    from lmap.execute.progress import Progress
+    from lmap.prepare import Prepared
+
+
+def check(
+    specs: str | Path | Iterable[str | Path],
+    *,
+    set: Mapping[str, Any] | None = None,  # noqa: A002 -- named as in specs
+    jobs: int | None = None,
+    report: str | Path | None = None,
+    progress: Progress | None = None,
+) -> Acceptance:
+    """Simulates and judges specs: files, folders, names (`hunting`) or ids (`2C.1`) of tests that ship.
+
+    `set` overrides keys of the specs and named parameters of their vehicles, `jobs` is the number of threads
+    (default: all processors), `report` a folder to write. Every spec is read, expanded and checked before the
+    first one runs; an `InputProblem` carries everything that is wrong with any of them.
+    """
+    begun = time.perf_counter()
+    given = [specs] if isinstance(specs, str | Path) else list(specs)
+    folder = None if report is None else _report_folder(Path(report))
+    prepared = _prepare_all(given, set or {})
+
+    from lmap.execute.local import run_cases
+
+    outcomes = run_cases([case for one in prepared for case in one.cases], jobs=jobs, progress=progress)
+    verdicts = []
+    for one in prepared:
+        own, outcomes = outcomes[: len(one.cases)], outcomes[len(one.cases) :]
+        verdicts.append(_judge(one, own))
+    acceptance = Acceptance(
+        specs=tuple(verdicts), version=version(), core=_core(), wall_s=time.perf_counter() - begun
+    )
+    if folder is not None:
+        write_report(acceptance, folder)
+    return acceptance
+
+
+def version() -> str:
+    """Of the installed package; `0` where it runs from its sources."""
+    from importlib.metadata import PackageNotFoundError
+    from importlib.metadata import version as installed
+
+    try:
+        return installed("lmap")
+    except PackageNotFoundError:
+        return "0"
+
+
+def find_specs(given: str | Path) -> list[Path]:
+    """The files that a SPEC argument means: a file, every spec of a folder, or a test by name or id."""
+    text, path = str(given), Path(given)
+    if path.is_dir() and not path.is_symlink():
+        found = sorted(path.glob("*.toml"))
+        if not found:
+            raise InputProblem(
+                Problem(file=files.shown(path), found="a folder without specs", allowed="*.toml in it")
+            )
+        return found
+    if files.SPEC.is_path(text) or isinstance(given, Path):
+        if path.is_file():
+            return [path]
+        raise InputProblem(
+            Problem(file=files.shown(path), found="no such file", allowed="a spec file or folder")
+        )
+    known = shipped()
+    for one in known:
+        if text == one.stem:
+            return [one]
+    ids = {spec_id(one): one for one in known}
+    if text in ids:
+        return [ids[text]]
+    words = sorted({one.stem for one in known} | {word for word in ids if word})
+    allowed = f"a spec file, a folder, or a test that ships: {listed(words, 40)}"
+    raise InputProblem(Problem(found=f'"{text}"', allowed=allowed, hint=nearest_hint(text, words)))
+
+
+def shipped() -> list[Path]:
+    """Every spec that can be called by name from the working folder, sorted; the nearest of a name wins."""
+    by_name = {name: files.find(files.SPEC, name, Path.cwd()) for name in files.names(files.SPEC, Path.cwd())}
+    return [by_name[name] for name in sorted(by_name)]
+
+
+def spec_id(path: Path) -> str:
+    """The `id` that a spec file says it has; empty where it cannot be read."""
+    from lmap import toml
+
+    try:
+        return str(toml.load(path, "spec").data.get("id", ""))
+    except InputProblem:
+        return ""
+
+
+def _prepare_all(given: Sequence[str | Path], settings: Mapping[str, Any]) -> list[Prepared]:
+    from lmap.prepare import prepare
+
+    paths: dict[Path, None] = {}
+    problems: list[Problem] = []
+    for one in given:
+        try:
+            paths.update(dict.fromkeys(find_specs(one)))
+        except InputProblem as error:
+            problems += error.problems
+    prepared = []
+    for path in paths:
+        try:
+            prepared.append(prepare(path, settings))
+        except InputProblem as error:
+            problems += error.problems
+    if problems:
+        raise InputProblem(problems)
+    if not prepared:
+        raise InputProblem(Problem(found="no spec", allowed="at least one SPEC"))
+    return prepared
+
+
+def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
+    """The spec's verdict on what its cases gave."""
+    import polars as pl
+
+    from lmap.criteria import judge
+
+    spec = prepared.spec
+    frames = {
+        case.label: pl.DataFrame() if outcome.frame is None else outcome.frame
+        for case, outcome in zip(prepared.cases, outcomes, strict=True)
+    }
+    quantities: Mapping[str, pl.DataFrame] = frames
+    if all(outcome.complete for outcome in outcomes):
+        quantities = prepared.procedure.quantities(spec, frames)
+    units = {name: channel.unit for name, channel in prepared.channels.items()}
+    criteria = tuple(
+        judge(
+            criterion,
+            quantities[case.label],
+            units,
+            index=index,
+            label=case.label,
+            case_hash=case.hash,
+            ended=outcome.trouble,
+        )
+        for index, criterion in enumerate(spec.criterion)
+        for case, outcome in zip(prepared.cases, outcomes, strict=True)
+    )
+    cases = tuple(
+        CaseResult(
+            label=case.label,
+            hash=case.hash,
+            case=case.data,
+            case_json=case.json,
+            frame=frames[case.label],
+            quantities=quantities[case.label],
+            ended=outcome.ended,
+            statistics=outcome.statistics,
+            units=units,
+            meanings={name: channel.meaning for name, channel in prepared.channels.items()},
+            wall_s=outcome.wall_s,
+        )
+        for case, outcome in zip(prepared.cases, outcomes, strict=True)
+    )
+    return SpecVerdict(
+        id=spec.id,
+        title=spec.title,
+        file=prepared.loaded.document.shown,
+        procedure=spec.procedure,
+        vehicle=prepared.vehicle.data.name,
+        condition=spec.condition or "",
+        outcome=Outcome.worst(criterion.outcome for criterion in criteria),
+        criteria=criteria,
+        facts=prepared.facts,
+        cases=cases,
+        inputs=prepared.inputs,
+        overrides=prepared.loaded.settings,
+    )
+
+
+def _core() -> str:
+    from lmap.simulate import core_version
+
+    return core_version()
+
+
+def _report_folder(folder: Path) -> Path:
+    """The folder, if it is one or can become one."""
+    if folder.exists() and not folder.is_dir():
+        raise InputProblem(
+            Problem(key=("--report",), found=f"{files.shown(folder)}, a file", allowed="a folder")
+        )
+    above = folder.absolute().parent
+    while not above.exists():
+        above = above.parent
+    if not above.is_dir() or not os.access(above, os.W_OK):
+        found = f"{files.shown(folder)}, where nothing can be written"
+        raise InputProblem(Problem(key=("--report",), found=found, allowed="a folder"))
+    return folder
+
+
+def write_report(acceptance: Acceptance, folder: Path) -> None:
+    """Writes the report beside `folder`, then moves it there file by file, each whole or not at all.
+
+    An interrupted check leaves what was there before. The page itself comes last.
+    """
+    from lmap.report import write_report as write
+
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    beside = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".partial", dir=folder.parent))
+    try:
+        write(acceptance, beside)
+        made = sorted(path for path in beside.rglob("*") if path.is_file())
+        for path in sorted(made, key=lambda one: one.name == "index.html"):
+            target = folder / path.relative_to(beside)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            path.replace(target)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)

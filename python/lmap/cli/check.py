@@ -1,0 +1,66 @@
+"""`lmap check`: simulate and judge."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def check(
+    specs: Annotated[
+        list[str],
+        typer.Argument(metavar="SPEC...", help="A file, a folder, or a test that ships: name or id."),
+    ],
+    report: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write the report to this folder.")
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="One JSON object on stdout, nothing else there.")
+    ] = False,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Override a key of the spec (run.speed_kmh=130) or a named parameter of the vehicle.",
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Threads; default: all processors.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+) -> None:
+    """Simulate and judge specs: a table of criteria with value, limit and margin.
+
+    Progress goes to stderr. Exit code: 0 everything passes, 1 something fails or waits, 2 bad input or not to
+    be judged, 130 stopped by Ctrl-C.
+
+    Example: lmap check hunting --report out/ --set secondary.kz=5e5 --jobs 2
+    """
+    from lmap.check import check as run_check
+    from lmap.execute.progress import choose
+    from lmap.spec import overrides
+
+    acceptance = run_check(
+        specs,
+        set=overrides.parse(settings or []),
+        jobs=jobs,
+        report=report,
+        progress=choose(quiet=quiet),
+    )
+    if as_json:
+        from lmap.report import to_json
+
+        sys.stdout.write(to_json(acceptance))
+    else:
+        from rich.console import Console
+
+        from lmap.report.terminal import table
+
+        table(acceptance, Console())
+        if report is not None:
+            print(f"report: {report / 'index.html'}", file=sys.stderr)
+    raise typer.Exit(acceptance.exit_code)

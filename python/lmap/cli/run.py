@@ -1,0 +1,64 @@
+"""`lmap run`: one case to parquet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def run(
+    case: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CASE", help="A case: JSON as in a report's cases/, or the same keys in TOML."
+        ),
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Default: CASE with .parquet, here.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+) -> None:
+    """Run one case and write its channels to a parquet file.
+
+    The file carries the channels' units and meanings as metadata. Exit code: 0 the run reached its end, 2 it
+    did not (what it recorded is not written) or the case is none, 130 stopped by Ctrl-C.
+
+    Example: lmap run out/cases/0f3a....json --output run.parquet
+    """
+    from lmap.errors import SimulationProblem
+    from lmap.execute.local import run_cases
+    from lmap.execute.progress import choose
+    from lmap.prepare import load_case
+    from lmap.report.parquet import to_parquet
+    from lmap.simulate import channels
+    from lmap.verdict import CaseResult
+
+    target = Path(f"{case.stem}.parquet") if output is None else output
+    loaded = load_case(case)
+    known = channels(loaded)
+    [outcome] = run_cases([loaded], jobs=1, progress=choose(quiet=quiet))
+    if outcome.frame is None or outcome.trouble is not None:
+        raise SimulationProblem(outcome.trouble or "the core gave no result")
+    result = CaseResult(
+        label=loaded.label,
+        hash=loaded.hash,
+        case=loaded.data,
+        case_json=loaded.json,
+        frame=outcome.frame,
+        quantities=outcome.frame,
+        ended=outcome.ended,
+        statistics=outcome.statistics,
+        units={channel.name: channel.unit for channel in known},
+        meanings={channel.name: channel.meaning for channel in known},
+        wall_s=outcome.wall_s,
+    )
+    target.parent.mkdir(parents=True, exist_ok=True)
+    partial = target.with_name(f".{target.name}.partial")
+    try:
+        partial.write_bytes(to_parquet(result))
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
+    typer.echo(f"{target}: {outcome.frame.height} rows, {outcome.frame.width} channels", err=True)

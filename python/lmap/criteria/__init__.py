@@ -1,0 +1,7 @@
+"""Criteria: what is judged, how, and against which limit."""
+
+from __future__ import annotations
+
+from lmap.criteria.chain import Criterion, Stage, chain_problems, expand, judge, signal_problems, trace
+
+__all__ = ["Criterion", "Stage", "chain_problems", "expand", "judge", "signal_problems", "trace"]

@@ -1,0 +1,363 @@
+"""Criteria as specs write them: signals, a chain of filters with a statistic at its end, a limit.
+
+    [[criterion]]
+    name = "lateral acceleration at the bogie centres"
+    signal = ["carbody.lead_pivot.ay", "carbody.trail_pivot.ay"]
+    chain = [{ lowpass = { cutoff_hz = 10.0 } }, { average_peak = { window_s = 5.0 } }]
+    unit = "g"
+    max_abs = 0.35
+    strict = true
+    source = "AS 7509.1"
+
+A signal may be a pattern: `ws*.left.LV` stands for that channel of every wheelset.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Annotated, Any, NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+import polars as pl
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    ValidationError,
+    model_validator,
+)
+
+from lmap import signals
+from lmap.criteria import units
+from lmap.errors import (
+    JudgementProblem,
+    KeyPath,
+    Problem,
+    listed,
+    nearest_hint,
+    problems_of_validation,
+)
+from lmap.signals import Filter, Link, Reading, Statistic, signal_of
+from lmap.verdict import CriterionVerdict, Outcome
+
+ASSUMED = "assumed"
+"""A `source` that says: no public source gives this limit, `reason` says why it was chosen."""
+
+
+def _listed_names(value: Any) -> Any:
+    """One name is a list of one."""
+    return [value] if isinstance(value, str) else value
+
+
+def _by_label(value: Any) -> Any:
+    """One figure is the figure of every case."""
+    return {"": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+class Criterion(BaseModel):
+    """One `[[criterion]]` table."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    name: str = Field(min_length=1)
+    signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
+    chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
+    unit: str
+    max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
+    max: FiniteFloat | None = None
+    min: FiniteFloat | None = None
+    strict: bool = False
+    """Whether reaching the limit fails."""
+    source: str = Field(min_length=1)
+    reason: str | None = None
+    published: Annotated[dict[str, FiniteFloat], BeforeValidator(_by_label)] = Field(default_factory=dict)
+    """Printed by the source: one figure for all cases (key ""), or one by case label."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.max_abs is not None and (self.max is not None or self.min is not None):
+            raise ValueError("max_abs alone, or max and min")
+        if self.max is not None and self.min is not None and self.min >= self.max:
+            raise ValueError("a min below max")
+        if self.source == ASSUMED and not self.reason:
+            raise ValueError('a reason where the source is "assumed"')
+        return self
+
+    @property
+    def bounds(self) -> tuple[float, ...]:
+        """Where limit lines stand; empty without a limit."""
+        if self.max_abs is not None:
+            return (-self.max_abs, self.max_abs)
+        return tuple(bound for bound in (self.min, self.max) if bound is not None)
+
+    @property
+    def limit_text(self) -> str:
+        """The limit for people, e.g. `|x| < 0.35`."""
+        less, more = ("<", ">") if self.strict else ("<=", ">=")
+        if self.max_abs is not None:
+            return f"|x| {less} {self.max_abs:g}"
+        parts = [f"{less} {self.max:g}"] if self.max is not None else []
+        if self.min is not None:
+            parts.insert(0, f"{more} {self.min:g}")
+        return " and ".join(parts)
+
+    def margin(self, value: float) -> tuple[float, float | None] | None:
+        """Distance to the nearest limit, positive inside, and in per cent of it; nothing without a limit."""
+        candidates: list[tuple[float, float]] = []
+        if self.max_abs is not None:
+            candidates.append((self.max_abs - abs(value), self.max_abs))
+        if self.max is not None:
+            candidates.append((self.max - value, self.max))
+        if self.min is not None:
+            candidates.append((value - self.min, self.min))
+        if not candidates:
+            return None
+        margin, limit = min(candidates, key=lambda candidate: candidate[0])
+        return margin, (100.0 * margin / abs(limit) if limit != 0.0 else None)
+
+    def passes(self, value: float) -> bool:
+        """Whether a value keeps the limit; NaN never does, without a limit every number does."""
+        if math.isnan(value):
+            return False
+        margin = self.margin(value)
+        if margin is None:
+            return True
+        return margin[0] > 0.0 if self.strict else margin[0] >= 0.0
+
+    def published_for(self, label: str) -> float | None:
+        """The printed figure for a case."""
+        return self.published.get(label, self.published.get(""))
+
+    def links(self) -> list[Link]:
+        """The chain's links; those with faults (see `chain_problems`) are left out."""
+        return [link for link, _ in (_link(table) for table in self.chain) if link is not None]
+
+    def written(self) -> dict[str, Any]:
+        """The criterion as plain data for TOML, defaults left out."""
+        data = self.model_dump(exclude_defaults=True, exclude_none=True)
+        data["chain"] = [link.written() for link in self.links()]
+        return data
+
+
+def _link(table: Mapping[str, Any]) -> tuple[Link | None, list[Problem]]:
+    """A link from its table `{lowpass = {cutoff_hz = 10.0}}`, or what is wrong with it."""
+    if len(table) != 1:
+        found = f"a table with {listed(table)}" if table else "an empty table"
+        return None, [Problem(found=found, allowed="one link, e.g. { max_abs = {} }")]
+    [(name, parameters)] = table.items()
+    kind = signals.BY_NAME.get(name)
+    if kind is None:
+        hint = nearest_hint(name, signals.BY_NAME)
+        return None, [Problem(found=f'"{name}"', allowed=listed(signals.BY_NAME, 30), hint=hint)]
+    try:
+        return kind.model_validate(parameters), []
+    except ValidationError as error:
+        known: dict[KeyPath, list[str]] = {(): list(kind.model_fields)}
+        found_ = problems_of_validation(error.errors(include_url=False), known)
+        return None, [problem.at(prefix=(name,)) for problem in found_]
+
+
+def chain_problems(criterion: Criterion) -> list[Problem]:
+    """What is wrong with a criterion's chain and unit; keys start at the criterion."""
+    problems: list[Problem] = []
+    links: list[Link] = []
+    for position, table in enumerate(criterion.chain):
+        link, faults = _link(table)
+        problems += [fault.at(prefix=("chain", position)) for fault in faults]
+        if link is not None:
+            links.append(link)
+            last = position == len(criterion.chain) - 1
+            if last and not isinstance(link, Statistic):
+                statistics = [name for name, kind in signals.BY_NAME.items() if issubclass(kind, Statistic)]
+                allowed = f"a statistic at the end: {listed(statistics, 30)}"
+                problems.append(
+                    Problem(found=f"the filter {link.name}", allowed=allowed, key=("chain", position))
+                )
+            if not last and not isinstance(link, Filter):
+                allowed = "filters, with one statistic at the end"
+                problems.append(
+                    Problem(found=f"the statistic {link.name}", allowed=allowed, key=("chain", position))
+                )
+    if criterion.unit not in units.UNITS:
+        hint = nearest_hint(criterion.unit, units.UNITS)
+        problems.append(
+            Problem(found=f'"{criterion.unit}"', allowed=listed(units.UNITS, 40), key=("unit",), hint=hint)
+        )
+    return problems
+
+
+def expand(patterns: Sequence[str], channels: Iterable[str]) -> list[str]:
+    """Channels that the patterns stand for, in the channels' order within each pattern, none twice."""
+    known = list(channels)
+    found: dict[str, None] = {}
+    for pattern in patterns:
+        if any(mark in pattern for mark in "*?["):
+            found.update(dict.fromkeys(name for name in known if fnmatch.fnmatchcase(name, pattern)))
+        elif pattern in known:
+            found[pattern] = None
+    return list(found)
+
+
+def signal_problems(criterion: Criterion, channels: Mapping[str, str]) -> list[Problem]:
+    """Signals that no channel has and units that do not compare; keys start at the criterion.
+
+    `channels` gives the unit by name.
+    """
+    problems: list[Problem] = []
+    for position, pattern in enumerate(criterion.signal):
+        key: KeyPath = ("signal",) if len(criterion.signal) == 1 else ("signal", position)
+        names = expand([pattern], channels)
+        if not names:
+            allowed = "a channel of the vehicle (`lmap channels VEHICLE` lists them)"
+            hint = nearest_hint(pattern, channels)
+            problems.append(Problem(found=f'"{pattern}"', allowed=allowed, key=key, hint=hint))
+        for name in names:
+            if criterion.unit in units.UNITS and units.factor(channels[name], criterion.unit) is None:
+                allowed = f"a unit of {name}: {listed(units.comparable(channels[name]))}"
+                problems.append(Problem(found=f'"{criterion.unit}"', allowed=allowed, key=("unit",)))
+                break
+    return problems
+
+
+class Stage(NamedTuple):
+    """A signal on its way through a chain."""
+
+    name: str
+    """`signal`, then the name of the link that made it."""
+    t: npt.NDArray[np.float64]
+    values: npt.NDArray[np.float64]
+
+
+def trace(
+    frame: pl.DataFrame,
+    chain: Sequence[Mapping[str, Any]],
+    signal: str,
+    *,
+    given: str = "1",
+    wanted: str = "1",
+) -> list[Stage]:
+    """The signal, what each filter makes of it and, where there is one, the statistic's curve; for plots.
+
+    Values are converted from the unit `given` (of the channel) to `wanted` (of the criterion). Raises what
+    judging would raise, a `JudgementProblem`.
+    """
+    stages, reading = _run(frame, chain, signal, _factor(signal, given, wanted))
+    if reading.curve is not None:
+        curve = reading.curve
+        stages.append(Stage(_statistic(chain), curve["t"].to_numpy(), curve["x"].to_numpy()))
+    return stages
+
+
+def _statistic(chain: Sequence[Mapping[str, Any]]) -> str:
+    return str(next(iter(chain[-1])))
+
+
+def _factor(signal: str, given: str, wanted: str) -> float:
+    factor = units.factor(given, wanted)
+    if factor is None:
+        raise JudgementProblem(f"{signal} is in {given}, which is no {wanted}")
+    return factor
+
+
+def _run(
+    frame: pl.DataFrame, chain: Sequence[Mapping[str, Any]], name: str, factor: float
+) -> tuple[list[Stage], Reading]:
+    signal = signal_of(frame, name, factor)
+    stages = [Stage("signal", signal["t"].to_numpy(), signal["x"].to_numpy())]
+    for table in chain:
+        link, problems = _link(table)
+        if isinstance(link, Filter):
+            signal = link.apply(signal)
+            stages.append(Stage(link.name, signal["t"].to_numpy(), signal["x"].to_numpy()))
+        elif isinstance(link, Statistic):
+            reading = link.read(signal)
+            if not math.isfinite(reading.value):
+                raise JudgementProblem(f"{link.name} of {name} is {reading.value}")
+            return stages, reading
+        else:
+            raise JudgementProblem("; ".join(str(problem) for problem in problems))
+    raise JudgementProblem("the chain has no statistic at its end")
+
+
+def judge(
+    criterion: Criterion,
+    frame: pl.DataFrame,
+    channel_units: Mapping[str, str],
+    *,
+    index: int = 0,
+    label: str = "",
+    case_hash: str = "",
+    ended: str | None = None,
+) -> CriterionVerdict:
+    """The criterion in one case, on the worst of its signals.
+
+    `ended` says why a run ended before it should have: then nothing can be judged. A missing signal, a NaN,
+    an empty window or a unit that does not compare is an error, never a pass.
+    """
+    names = expand(criterion.signal, frame.columns)
+    missing = [pattern for pattern in criterion.signal if not expand([pattern], frame.columns)]
+    readings: list[tuple[str, Reading]] = []
+    message = ended
+    if message is None and missing:
+        message = f"the frame has no channel {listed(missing)}"
+    if message is None and not names:
+        message = "the criterion names no signal"
+    if message is None:
+        try:
+            for name in names:
+                factor = _factor(name, channel_units.get(name, "unknown"), criterion.unit)
+                readings.append((name, _run(frame, criterion.chain, name, factor)[1]))
+        except JudgementProblem as problem:
+            message = str(problem)
+    if message is not None:
+        return _verdict(criterion, index, label, case_hash, tuple(names), Outcome.ERROR, message=message)
+    name, reading = min(readings, key=lambda entry: _goodness(criterion, entry[1].value))
+    outcome = Outcome.PASS if criterion.passes(reading.value) else Outcome.FAIL
+    return _verdict(criterion, index, label, case_hash, tuple(names), outcome, name, reading)
+
+
+def _goodness(criterion: Criterion, value: float) -> float:
+    """Smallest is worst: the margin, or without a limit the size."""
+    margin = criterion.margin(value)
+    return -abs(value) if margin is None else margin[0]
+
+
+def _verdict(
+    criterion: Criterion,
+    index: int,
+    label: str,
+    case_hash: str,
+    names: tuple[str, ...],
+    outcome: Outcome,
+    signal: str | None = None,
+    reading: Reading | None = None,
+    message: str | None = None,
+) -> CriterionVerdict:
+    margin = criterion.margin(reading.value) if reading is not None else None
+    return CriterionVerdict(
+        index=index,
+        name=criterion.name,
+        case=label,
+        case_hash=case_hash,
+        signals=names,
+        signal=signal,
+        chain=tuple(criterion.chain),
+        value=None if reading is None else reading.value,
+        unit=criterion.unit,
+        limit=criterion.limit_text,
+        bounds=criterion.bounds,
+        margin=None if margin is None else margin[0],
+        margin_percent=None if margin is None else margin[1],
+        judged=bool(criterion.bounds),
+        outcome=outcome,
+        source=criterion.source,
+        reason=criterion.reason,
+        published=criterion.published_for(label),
+        at=None if reading is None else reading.at(),
+        message=message,
+    )

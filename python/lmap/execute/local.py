@@ -1,0 +1,101 @@
+"""Running cases on this machine's threads."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import polars as pl
+
+from lmap import toml
+from lmap.execute.progress import Progress
+from lmap.spec.case import Case
+
+END_OF_TRACK = "end_of_track"
+
+
+@dataclass(frozen=True, slots=True)
+class CaseOutcome:
+    """What came back for one case."""
+
+    frame: pl.DataFrame | None
+    """The channels, up to where the run ended; nothing where it never started."""
+    ended: Mapping[str, Any]
+    """`kind` (`end_of_track`, `diverged` or `error`), `t`, `s`, `message`."""
+    statistics: Mapping[str, Any] = field(default_factory=dict)
+    wall_s: float = 0.0
+
+    @property
+    def complete(self) -> bool:
+        """Whether the run reached its end."""
+        return self.ended.get("kind") == END_OF_TRACK
+
+    @property
+    def trouble(self) -> str | None:
+        """Why the run ended before its end."""
+        if self.complete:
+            return None
+        return f"the run ended early: {self.ended.get('message') or self.ended.get('kind')}"
+
+
+def default_jobs() -> int:
+    """The processors that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on macOS and Windows
+        return os.cpu_count() or 1
+
+
+def run_cases(
+    cases: Sequence[Case], *, jobs: int | None = None, progress: Progress | None = None
+) -> list[CaseOutcome]:
+    """Runs cases on `jobs` threads; outcomes stand in the order of the cases, whatever finished first.
+
+    Each distinct case runs once. A case that cannot run becomes an outcome with its message; Ctrl-C raises
+    `KeyboardInterrupt`.
+    """
+    distinct = list({case.hash: case for case in cases}.values())
+    if not distinct:
+        return []
+    threads = max(1, min(jobs or default_jobs(), len(distinct)))
+    outcomes: list[CaseOutcome | None] = [None] * len(distinct)
+    begun: list[float | None] = [None] * len(distinct)
+    hears = Progress() if progress is None else progress
+    railsim = toml.core()
+    start = time.perf_counter()
+
+    def on_progress(index: int, fraction: float, distance: float, factor: float) -> None:
+        if begun[index] is None:
+            begun[index] = time.perf_counter()
+        hears.update(index, fraction, distance, factor)
+
+    def on_done(index: int, result: Any) -> None:
+        wall_s = time.perf_counter() - (begun[index] or start)
+        outcome = _outcome(result, wall_s, railsim.RailsimError)
+        outcomes[index] = outcome
+        hears.done(index, outcome.wall_s, outcome.trouble)
+
+    with hears:
+        hears.begin([(case.label, _length(case)) for case in distinct], threads)
+        railsim.run_cases([case.json for case in distinct], threads, on_progress, on_done)
+    by_hash = {
+        case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
+        for case, outcome in zip(distinct, outcomes, strict=True)
+    }
+    return [by_hash[case.hash] for case in cases]
+
+
+def _outcome(result: Any, wall_s: float, error: type[Exception]) -> CaseOutcome:
+    if isinstance(result, error):
+        return CaseOutcome(None, {"kind": "error", "message": str(result)}, wall_s=wall_s)
+    statistics = dict(result.statistics)
+    ended = dict(result.ended)
+    return CaseOutcome(pl.DataFrame(result), ended, statistics, float(getattr(result, "wall_s", wall_s)))
+
+
+def _length(case: Case) -> float | None:
+    length = case.data.get("track", {}).get("length")
+    return float(length) if isinstance(length, int | float) else None

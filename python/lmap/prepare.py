@@ -1,0 +1,325 @@
+"""From a spec file to cases that are ready to run: what can be wrong is found here, before anything runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lmap import contact, files, procedures, toml
+from lmap.criteria.chain import signal_problems
+from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
+from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Procedure
+from lmap.simulate import Channel, channels, check_case, track_extremes
+from lmap.spec.case import Case, build, merged
+from lmap.spec.load import LoadedSpec, load
+from lmap.spec.model import Spec
+from lmap.vehicle import Vehicle
+from lmap.verdict import Fact, InputFile
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prepared:
+    """A spec with its cases, checked."""
+
+    loaded: LoadedSpec
+    spec: Spec
+    """With the base track under its `[track]`."""
+    vehicle: Vehicle
+    procedure: Procedure
+    cases: tuple[Case, ...]
+    channels: Mapping[str, Channel]
+    """What the criteria can judge, by name."""
+    facts: tuple[Fact, ...]
+    inputs: tuple[InputFile, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sources:
+    """Which file holds which part of a case."""
+
+    loaded: LoadedSpec
+    vehicle: Vehicle
+    base: toml.Document | None
+    profiles: Mapping[str, tuple[Path, str]]
+    """Path and text by name."""
+
+    def locate(self, problem: Problem) -> Problem:
+        """A problem whose key starts at the case, with the file and line where that part is written."""
+        part, rest = (str(problem.key[0]) if problem.key else ""), problem.key[1:]
+        if part == "vehicle" and rest:
+            return self.vehicle.document.locate(problem, rest)
+        if part == "track" and rest and not _is_written(self.loaded, problem.key) and self.base is not None:
+            base_key: KeyPath = problem.key if isinstance(self.base.data.get("track"), dict) else rest
+            return self.base.locate(problem, base_key)
+        if problem.key == ("run", "speed") and not _is_written(self.loaded, problem.key):
+            return self.loaded.locate(
+                Problem(key=("run", "speed_kmh"), found=problem.found, allowed=problem.allowed)
+            )
+        if part == "profiles" and rest and rest[0] in self.profiles:
+            return problem.at(file=files.shown(self.profiles[str(rest[0])][0]))
+        return self.loaded.locate(problem)
+
+
+def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
+    """A spec ready to run; an `InputProblem` with everything that is wrong with it."""
+    loaded = load(path, settings)
+    procedure = _procedure(loaded)
+    vehicle = _vehicle(loaded)
+    spec, base = _with_base_track(loaded, vehicle)
+    try:
+        cases = procedure.cases(spec, vehicle.data)
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
+    labels = [case.label for case in cases]
+    if len(set(labels)) != len(labels):
+        twice = sorted({label for label in labels if labels.count(label) > 1})
+        found = f"cases with the same label: {listed(twice)}"
+        raise InputProblem(
+            loaded.locate(Problem(key=("run",), found=found, allowed="speeds and profiles that differ"))
+        )
+    profiles, data = _profiles(cases, loaded, vehicle, base)
+    cases = [case.with_profiles(data) for case in cases]
+    sources = _Sources(loaded, vehicle, base, profiles)
+    known = _checked(cases, sources, procedure)
+    _check_signals(loaded, spec, known)
+    figures = [_figures(case) for case in cases]
+    return Prepared(
+        loaded=loaded,
+        spec=spec,
+        vehicle=vehicle,
+        procedure=procedure,
+        cases=tuple(cases),
+        channels=known,
+        facts=tuple(procedure.facts(spec, figures)),
+        inputs=_inputs(sources),
+    )
+
+
+def _procedure(loaded: LoadedSpec) -> Procedure:
+    name = loaded.spec.procedure
+    procedure = procedures.BY_NAME.get(name)
+    if procedure is None:
+        hint = nearest_hint(name, procedures.BY_NAME)
+        allowed = listed(sorted(procedures.BY_NAME), 40)
+        raise InputProblem(
+            loaded.locate(Problem(key=("procedure",), found=f'"{name}"', allowed=allowed, hint=hint))
+        )
+    return procedure
+
+
+def _vehicle(loaded: LoadedSpec) -> Vehicle:
+    spec = loaded.spec
+    try:
+        vehicle = Vehicle.load(spec.vehicle, beside=loaded.document.path, overrides=loaded.parameters)
+        known = vehicle.data.conditions
+        if spec.condition is None:
+            return vehicle
+        if known and spec.condition not in known:
+            hint = nearest_hint(spec.condition, known)
+            found, allowed = (
+                f'"{spec.condition}"',
+                f"a condition of {vehicle.document.shown}: {listed(known)}",
+            )
+            raise InputProblem(Problem(key=("condition",), found=found, allowed=allowed, hint=hint))
+        return vehicle.resolve(loaded.parameters, spec.condition)
+    except InputProblem as error:
+        # what has no file yet is about a key of the spec: the vehicle's name, an override, the condition
+        raise InputProblem(
+            [
+                problem
+                if problem.file is not None
+                else loaded.locate(problem.at(prefix=() if problem.key else ("vehicle",)))
+                for problem in error.problems
+            ]
+        ) from None
+
+
+def _with_base_track(loaded: LoadedSpec, vehicle: Vehicle) -> tuple[Spec, toml.Document | None]:
+    """The spec with the base track (`track.base`, else the vehicle's) laid under its own `[track]`."""
+    own = dict(loaded.spec.track)
+    named_here = "base" in own
+    name = own.pop("base", vehicle.data.track)
+    if name is None:
+        return loaded.spec.model_copy(update={"track": own}), None
+    beside = loaded.document.path if named_here else vehicle.document.path
+    key: KeyPath = ("track", "base") if named_here else ("track",)
+    owner = loaded if named_here else vehicle.document
+    if not isinstance(name, str):
+        raise InputProblem(
+            owner.locate(Problem(key=key, found=str(name), allowed="the name of a track, in quotes"))
+        )
+    try:
+        document = toml.load(files.find(files.TRACK, name, beside), "track")
+    except InputProblem as error:
+        raise InputProblem(
+            [p if p.file is not None else owner.locate(p.at(prefix=key)) for p in error.problems]
+        ) from None
+    written = document.data.get("track", document.data)
+    return loaded.spec.model_copy(update={"track": merged(written, own)}), document
+
+
+def _profiles(
+    cases: Sequence[Case], loaded: LoadedSpec, vehicle: Vehicle, base: toml.Document | None
+) -> tuple[dict[str, tuple[Path, str]], dict[str, Any]]:
+    """Path and text, and the data for the case, of every profile that the cases name."""
+    found: dict[str, tuple[Path, str]] = {}
+    data: dict[str, Any] = {}
+    problems: list[Problem] = []
+    places = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
+    railsim = toml.core()
+    for case in cases:
+        for name, key in case.profile_names.items():
+            if name in data:
+                continue
+            try:
+                path = _first(name, places)
+                text = files.read_text(path, "profile")
+            except InputProblem as error:
+                problems += [p if p.file else loaded.locate(p.at(prefix=key)) for p in error.problems]
+                continue
+            found[name] = (path, text)
+            try:
+                points = json.loads(railsim.read_profile(text, name))
+            except railsim.InputError as error:
+                full: KeyPath = ("profiles", name)
+                problems += [
+                    (p if p.key[:2] == full else p.at(prefix=full)).at(file=files.shown(path))
+                    for p in toml.problems_of_core(error)
+                ]
+                continue
+            data[name] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
+    if problems:
+        raise InputProblem(problems)
+    return found, data
+
+
+def _first(name: str, places: Sequence[Path]) -> Path:
+    """A profile seen from the first place that has it."""
+    failure: InputProblem | None = None
+    for place in places:
+        try:
+            return files.find(files.PROFILE, name, place)
+        except InputProblem as error:
+            failure = failure or error
+    assert failure is not None  # places is never empty
+    raise failure
+
+
+def _checked(cases: Sequence[Case], sources: _Sources, procedure: Procedure) -> dict[str, Channel]:
+    """The channels that every case gives, after the core has checked every case."""
+    problems: list[Problem] = []
+    for case in cases:
+        try:
+            check_case(case)
+        except InputProblem as error:
+            problems += [sources.locate(problem) for problem in error.problems]
+    if problems:
+        raise InputProblem(problems)
+    common: dict[str, Channel] = {}
+    for number, case in enumerate(cases):
+        given = {channel.name: channel for channel in channels(case)}
+        common = given if number == 0 else {name: common[name] for name in common if name in given}
+    return common | {name: Channel(name, unit, "") for name, unit in procedure.UNITS.items()}
+
+
+def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel]) -> None:
+    units = {name: channel.unit for name, channel in known.items()}
+    problems = [
+        loaded.locate(problem.at(prefix=("criterion", index)))
+        for index, criterion in enumerate(spec.criterion)
+        for problem in signal_problems(criterion, units)
+    ]
+    if problems:
+        raise InputProblem(problems)
+
+
+def _figures(case: Case) -> CaseFigures:
+    """What is shown beside the verdicts; what the core cannot say is left out."""
+    try:
+        extremes = track_extremes(case)
+    except SimulationProblem:
+        extremes = {}
+    try:
+        conicity = contact.equivalent_conicity(case, CONICITY_AMPLITUDE)
+    except SimulationProblem:
+        conicity = None
+    return CaseFigures(case=case, track_extremes=extremes, conicity=conicity)
+
+
+def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
+    documents = [("spec", sources.loaded.document), ("vehicle", sources.vehicle.document)]
+    if sources.base is not None:
+        documents.append(("track", sources.base))
+    inputs = [InputFile(role=role, path=doc.shown, sha256=doc.sha256) for role, doc in documents]
+    for path, text in sources.profiles.values():
+        inputs.append(InputFile(role="profile", path=files.shown(path), sha256=files.sha256(text)))
+    return tuple(inputs)
+
+
+def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:
+    """Whether the spec itself, or a setting, writes a key or the table's entry that it lies in."""
+    dotted = ".".join(map(str, key[:2]))
+    table = loaded.document.data.get(str(key[0]), {})
+    if any(setting == dotted or setting.startswith(f"{dotted}.") for setting in loaded.settings):
+        return True
+    return isinstance(table, dict) and len(key) > 1 and key[1] in table
+
+
+def load_case(path: Path) -> Case:
+    """A case from a file, JSON or the same keys in TOML, checked by the core."""
+    document: toml.Document | None = None
+    if path.suffix == ".toml":
+        document = toml.load(path, "case")
+        data: Any = document.data
+    else:
+        try:
+            data = json.loads(files.read_text(path, "case"))
+        except json.JSONDecodeError as error:
+            raise InputProblem(
+                Problem(
+                    file=files.shown(path), line=error.lineno, found=f"no JSON: {error.msg}", allowed="a case"
+                )
+            ) from None
+    if not isinstance(data, dict):
+        raise InputProblem(Problem(file=files.shown(path), found="no table", allowed="a case"))
+    case = Case(str(data.get("label", path.stem)), data)
+    try:
+        check_case(case)
+    except InputProblem as error:
+        raise InputProblem(
+            [
+                document.locate(p) if document is not None else p.at(file=files.shown(path))
+                for p in error.problems
+            ]
+        ) from None
+    return case
+
+
+def vehicle_channels(name: str) -> list[Channel]:
+    """The channels that a vehicle's runs record: those of a short case on its own base track."""
+    vehicle = Vehicle.load(name)
+    track: dict[str, Any] = {"length": 100.0}
+    base: toml.Document | None = None
+    if vehicle.data.track is not None:
+        base = toml.load(files.find(files.TRACK, vehicle.data.track, vehicle.document.path), "track")
+        track = merged(base.data.get("track", base.data), track)
+    run = {
+        "kind": "time",
+        "speed": vehicle.data.design_speed,
+        "friction": 0.4,
+        "wheel_profile": vehicle.data.wheel_profile,
+    }
+    case = build(label="channels", vehicle=vehicle.data, track=track, run=run)
+    places = [vehicle.document.path, *([base.path] if base is not None else [])]
+    railsim = toml.core()
+    data = {
+        profile: {
+            "kind": "wheel" if key[-1] == "wheel_profile" else "rail",
+            **json.loads(railsim.read_profile(files.read_text(_first(profile, places), "profile"), profile)),
+        }
+        for profile, key in case.profile_names.items()
+    }
+    return channels(case.with_profiles(data))

@@ -1,0 +1,79 @@
+"""What a procedure is, and what most of them share.
+
+A procedure is a module with two pure functions: `cases` turns a spec into cases, `quantities` turns the
+frames of all cases into what the criteria judge. It never calls the simulator, opens no file and judges
+nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+from lmap.errors import InputProblem, Problem
+from lmap.spec.case import Case, VehicleData, build
+from lmap.spec.model import Spec
+from lmap.verdict import Fact
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaseFigures:
+    """What the core says about a case's track and contact, for the facts shown beside the verdicts."""
+
+    case: Case
+    track_extremes: Mapping[str, tuple[float, float]]
+    """Least and largest deviation by name, m; empty where the core gave none."""
+    conicity: float | None
+    """Equivalent conicity at `CONICITY_AMPLITUDE`."""
+
+
+CONICITY_AMPLITUDE = 0.003
+"""m, the amplitude at which EN 15302 and UIC 519 quote one figure for a profile pair."""
+
+
+class Procedure(Protocol):
+    """The shape of a procedure's module."""
+
+    NAME: str
+    SUMMARY: str
+    UNITS: Mapping[str, str]
+    """Units of the columns that `quantities` adds."""
+
+    def cases(self, spec: Spec, vehicle: VehicleData) -> list[Case]:
+        """The cases that a spec expands to, profiles still by name."""
+
+    def quantities(self, spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
+        """What is judged, by label; by default the frames themselves."""
+
+    def facts(self, spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
+        """What is shown beside the verdicts."""
+
+
+def expand(spec: Spec, vehicle: VehicleData, *, kind: str = "time") -> list[Case]:
+    """A case for every wheel profile and speed that the spec lists, profiles outermost.
+
+    The label says what varies: the wheel profile where the spec names any, the speed where it lists several
+    or where nothing else would be said.
+    """
+    speeds = spec.run.speeds
+    if speeds is None:
+        allowed = 'a speed in m/s, "110% design" or a list; or speed_kmh'
+        raise InputProblem(Problem(key=("run", "speed"), found="nothing", allowed=allowed))
+    profiles = spec.run.wheel_profile or ([vehicle.wheel_profile] if vehicle.wheel_profile else [])
+    if not profiles:
+        allowed = "the name of a profile, or a list of names"
+        raise InputProblem(Problem(key=("run", "wheel_profile"), found="nothing", allowed=allowed))
+    cases = []
+    for profile in profiles:
+        for written in speeds:
+            speed = written.resolve(vehicle.design_speed)
+            parts = [profile] if spec.run.wheel_profile else []
+            if len(speeds) > 1 or not parts:
+                parts.append(f"{speed * 3.6:.6g} km/h")
+            run: dict[str, Any] = {"kind": kind, **spec.run.rest, "speed": speed, "wheel_profile": profile}
+            cases.append(build(label=" ".join(parts), vehicle=vehicle, track=spec.track, run=run))
+    return cases

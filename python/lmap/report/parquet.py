@@ -1,0 +1,33 @@
+"""A case's frame as parquet that explains itself: units, meanings and the case's hash as file metadata.
+
+polars keeps no metadata of columns, so it stands in the file's own: `lmap.channels`, a JSON list of name, unit
+and meaning of every column, and `lmap.case`, the hash. Nothing in the file depends on when it was written.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+
+from lmap.verdict import CaseResult
+
+CHANNELS_KEY = "lmap.channels"
+CASE_KEY = "lmap.case"
+
+
+def to_parquet(case: CaseResult) -> bytes:
+    """The file's bytes."""
+    buffer = io.BytesIO()
+    case.frame.write_parquet(
+        buffer, compression="zstd", metadata={CASE_KEY: case.hash, CHANNELS_KEY: channels_json(case)}
+    )
+    return buffer.getvalue()
+
+
+def channels_json(case: CaseResult) -> str:
+    """Name, unit and meaning of every column of the frame, in its order."""
+    channels = [
+        {"name": name, "unit": case.units.get(name, ""), "meaning": case.meanings.get(name, "")}
+        for name in case.frame.columns
+    ]
+    return json.dumps(channels, ensure_ascii=False)

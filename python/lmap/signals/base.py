@@ -1,0 +1,118 @@
+"""What a link of a chain is: a frozen pydantic model with its parameters, named as in specs.
+
+A signal is a frame with three columns: `t` (s), `s` (m) and `x` (the values). A filter turns a signal into a
+signal, a statistic turns it into a reading.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar
+
+import polars as pl
+from pydantic import BaseModel, ConfigDict, Field
+
+from lmap.errors import JudgementProblem
+
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+"""A finite number above zero."""
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+"""A finite number, zero or above."""
+
+STEP_TOLERANCE = 1e-6
+"""Relative unevenness of `t` that still counts as evenly sampled: rounding of t = k * step."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A statistic's value and where it is."""
+
+    value: float
+    t: float
+    """Time of the extreme, or the middle of its window, s."""
+    s: float
+    """Distance there, m."""
+    window_s: float | None = None
+    window_m: float | None = None
+    curve: pl.DataFrame | None = field(default=None, compare=False)
+    """Columns `t`, `x`: the statistic along the run, for plots, where it has one."""
+
+    def at(self) -> dict[str, float]:
+        """Where, as plain data."""
+        place = {"t": self.t, "s": self.s}
+        if self.window_s is not None:
+            place["window_s"] = self.window_s
+        if self.window_m is not None:
+            place["window_m"] = self.window_m
+        return place
+
+
+class Link(BaseModel, ABC):
+    """One link of a chain."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+    name: ClassVar[str]
+
+    def written(self) -> dict[str, Any]:
+        """The link as a spec writes it: `{lowpass = {cutoff_hz = 10.0}}`, defaults left out."""
+        return {self.name: self.model_dump(exclude_defaults=True, exclude_none=True)}
+
+
+class Filter(Link):
+    """A link that turns a signal into a signal."""
+
+    @abstractmethod
+    def apply(self, signal: pl.DataFrame) -> pl.DataFrame:
+        """The filtered signal, with the columns `t`, `s`, `x`."""
+
+
+class Statistic(Link):
+    """A link that turns a signal into one number."""
+
+    @abstractmethod
+    def read(self, signal: pl.DataFrame) -> Reading:
+        """The number and where it is; a `JudgementProblem` where there is none."""
+
+    @property
+    def is_magnitude(self) -> bool:
+        """Whether the value is never negative, so that a limit line stands on both sides of the signal."""
+        return False
+
+
+def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFrame:
+    """The channel `name` of a frame as a signal; refuses what is missing, empty, null, NaN or infinite."""
+    for column in ("t", "s", name):
+        if column not in frame.columns:
+            raise JudgementProblem(f"the frame has no channel {column}")
+    signal = frame.select(
+        pl.col("t").cast(pl.Float64), pl.col("s").cast(pl.Float64), x=pl.col(name).cast(pl.Float64) * factor
+    )
+    if signal.is_empty():
+        raise JudgementProblem(f"{name} has no samples")
+    bad = signal.filter(~pl.all_horizontal(pl.all().is_finite().fill_null(False)))
+    if not bad.is_empty():
+        when = bad.item(0, "t")
+        place = "" if when is None else f", first at t = {when:.3f} s"
+        raise JudgementProblem(f"{name} is not finite in {bad.height} of {signal.height} samples{place}")
+    return signal
+
+
+def sample_step(signal: pl.DataFrame) -> float:
+    """The time between samples, s; refuses a signal that is not evenly sampled."""
+    if signal.height < 2:
+        raise JudgementProblem(f"{signal.height} sample is too few to filter")
+    steps = signal.select(
+        first=pl.col("t").first(),
+        mean=(pl.col("t").last() - pl.col("t").first()) / (pl.len() - 1),
+        least=pl.col("t").diff().min(),
+        most=pl.col("t").diff().max(),
+        last=pl.col("t").last(),
+    ).row(0, named=True)
+    mean = float(steps["mean"])
+    slack = STEP_TOLERANCE * abs(mean) + 4.0 * 2.3e-16 * max(abs(steps["first"]), abs(steps["last"]))
+    if mean <= 0.0 or steps["most"] - mean > slack or mean - steps["least"] > slack:
+        raise JudgementProblem(
+            f"t is not evenly spaced: steps from {steps['least']:.6g} to {steps['most']:.6g} s"
+        )
+    return mean

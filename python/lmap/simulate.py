@@ -1,0 +1,80 @@
+"""One case in, one frame out; and what the core says about a case without running it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from lmap import toml
+from lmap.errors import InputProblem, SimulationProblem
+from lmap.spec.case import Case
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+class Channel(NamedTuple):
+    """One column of a frame."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+def simulate(case: Case | Mapping[str, Any] | str) -> pl.DataFrame:
+    """The channels of one case: `t` (s), `s` (m), then dotted names.
+
+    `case` is a case, its plain data or its JSON (as in a report's `cases/`). Raises `InputProblem` for a case
+    that is none, `SimulationProblem` for a run that the core could not finish.
+    """
+    from lmap.execute.local import run_cases
+
+    case = as_case(case)
+    check_case(case)
+    [outcome] = run_cases([case], jobs=1)
+    if outcome.frame is None or not outcome.complete:
+        raise SimulationProblem(outcome.ended.get("message") or "the run did not reach its end")
+    return outcome.frame
+
+
+def as_case(case: Case | Mapping[str, Any] | str) -> Case:
+    """A case from its plain data or its JSON."""
+    if isinstance(case, Case):
+        return case
+    data = json.loads(case) if isinstance(case, str) else case
+    return Case(str(data.get("label", "case")), data)
+
+
+def check_case(case: Case) -> None:
+    """Raises an `InputProblem` with everything that the core finds wrong; keys start at the case."""
+    railsim = toml.core()
+    try:
+        railsim.check_case(case.json)
+    except railsim.InputError as error:
+        raise InputProblem(toml.problems_of_core(error)) from None
+
+
+def channels(case: Case) -> list[Channel]:
+    """The channels that a case gives."""
+    railsim = toml.core()
+    try:
+        return [Channel(*channel) for channel in railsim.channels(case.json)]
+    except railsim.InputError as error:
+        raise InputProblem(toml.problems_of_core(error)) from None
+
+
+def track_extremes(case: Case) -> dict[str, tuple[float, float]]:
+    """Least and largest `lateral`, `vertical`, `cross_level` and `gauge` deviation of a case's track, m."""
+    railsim = toml.core()
+    try:
+        extremes = railsim.track_extremes(case.json)
+    except railsim.RailsimError as error:
+        raise SimulationProblem(str(error)) from None
+    return {name: (float(least), float(most)) for name, (least, most) in extremes.items()}
+
+
+def core_version() -> str:
+    """Version and fingerprint of the compiled core."""
+    railsim = toml.core()
+    return f"{railsim.version()} ({railsim.fingerprint()})"

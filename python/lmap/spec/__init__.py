@@ -1,0 +1,1 @@
+"""Specs: what is written, loaded and checked; and the cases they become."""

@@ -1,0 +1,101 @@
+"""Cases: one fully resolved simulation each, as plain data, with a hash as identity."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+FORMAT = 1
+"""Of the case's JSON; the core refuses another."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleData:
+    """A vehicle as procedures see it: resolved for a condition, as plain data."""
+
+    file: str
+    document: Mapping[str, Any]
+    """As written, overrides applied: what goes into a case."""
+    name: str
+    title: str
+    design_speed: float
+    """m/s."""
+    wheel_radius: float
+    """m."""
+    wheel_profile: str | None
+    """The profile that the vehicle names."""
+    track: str | None
+    """The base track that the vehicle names."""
+    condition: str | None
+    conditions: tuple[str, ...]
+    mass: float | None
+    """kg, in the condition."""
+    bodies: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One simulation. Complete but for the profiles' points until `with_profiles` puts them in."""
+
+    label: str
+    """What varies within the spec: `anzr1_worn_1`, `23 km/h`."""
+    data: Mapping[str, Any]
+
+    @cached_property
+    def json(self) -> str:
+        """The case for the core: keys sorted, numbers as they round-trip, NaN refused."""
+        return json.dumps(
+            self.data, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+        )
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the JSON: same hash, same bytes of result."""
+        return hashlib.sha256(self.json.encode()).hexdigest()
+
+    @property
+    def profile_names(self) -> dict[str, tuple[str | int, ...]]:
+        """Names of the profiles that the case needs, with the key that names each."""
+        names: dict[str, tuple[str | int, ...]] = {}
+        for part, key in (("track", "rail_profile"), ("run", "wheel_profile")):
+            name = self.data.get(part, {}).get(key)
+            if isinstance(name, str):
+                names.setdefault(name, (part, key))
+        return names
+
+    def with_profiles(self, profiles: Mapping[str, Any]) -> Case:
+        """The case with the points of the profiles that it names in it."""
+        needed = {name: profiles[name] for name in sorted(self.profile_names) if name in profiles}
+        return Case(self.label, {**self.data, "profiles": needed})
+
+
+def build(*, label: str, vehicle: VehicleData, track: Mapping[str, Any], run: Mapping[str, Any]) -> Case:
+    """A case from its parts."""
+    data: dict[str, Any] = {
+        "format": FORMAT,
+        "label": label,
+        "vehicle": vehicle.document,
+        "track": dict(track),
+        "run": dict(run),
+    }
+    if vehicle.condition is not None:
+        data["condition"] = vehicle.condition
+    return Case(label, data)
+
+
+def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """A base's tables with the keys of `over` on top; a table of another `kind` replaces, a list too."""
+    result = copy.deepcopy(dict(base))
+    for key, value in over.items():
+        below = result.get(key)
+        if isinstance(below, dict) and isinstance(value, Mapping):
+            same_kind = value.get("kind", below.get("kind")) == below.get("kind")
+            result[key] = merged(below, value) if same_kind else copy.deepcopy(dict(value))
+        else:
+            result[key] = copy.deepcopy(value)
+    return result

@@ -1,0 +1,140 @@
+"""What a spec is, as written: the keys that a procedure expands, checked; all other keys of `[track]` and
+`[run]` go through as plain data and are checked by the core, which owns their kinds.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from lmap.criteria.chain import Criterion
+
+_PER_CENT = re.compile(r"^\s*([0-9]+(?:\.[0-9]+)?)\s*%\s*design\s*$")
+
+
+class Speed(BaseModel):
+    """One speed, as written: a part of the vehicle's design speed, or m/s."""
+
+    model_config = ConfigDict(frozen=True)
+    metres_per_second: float | None = None
+    of_design: float | None = None
+
+    def resolve(self, design_speed: float) -> float:
+        """In m/s."""
+        if self.metres_per_second is not None:
+            return self.metres_per_second
+        assert self.of_design is not None  # one of the two is always given
+        return self.of_design * design_speed
+
+
+def _many(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, list | tuple) else [value]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _speeds(value: Any) -> list[Speed]:
+    """Speeds as `run.speed` writes them."""
+    speeds = []
+    for item in _many(value):
+        if isinstance(item, Speed):
+            speeds.append(item)
+            continue
+        match = _PER_CENT.match(item) if isinstance(item, str) else None
+        if match is not None and float(match[1]) > 0.0:
+            speeds.append(Speed(of_design=float(match[1]) / 100.0))
+        elif _is_number(item) and item > 0.0:
+            speeds.append(Speed(metres_per_second=float(item)))
+        else:
+            raise ValueError('a number > 0 (m/s), "110% design", or a list of these')
+    if not speeds:
+        raise ValueError("at least one speed")
+    return speeds
+
+
+def _speeds_kmh(value: Any) -> list[Speed]:
+    """Speeds as `run.speed_kmh` writes them."""
+    speeds = []
+    for item in _many(value):
+        if isinstance(item, Speed):
+            speeds.append(item)
+        elif _is_number(item) and item > 0.0:
+            speeds.append(Speed(metres_per_second=float(item) / 3.6))
+        else:
+            raise ValueError("a number > 0 (km/h), or a list of these")
+    if not speeds:
+        raise ValueError("at least one speed")
+    return speeds
+
+
+def _names(value: Any) -> list[str]:
+    names = _many(value)
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise ValueError("a name in quotes, or a list of names")
+    if len(set(names)) != len(names):
+        raise ValueError("names that differ from each other")
+    return names
+
+
+class RunPart(BaseModel):
+    """`[run]`: what procedures expand; the rest is the core's and kept as it is."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    speed: Annotated[list[Speed] | None, BeforeValidator(lambda v: None if v is None else _speeds(v))] = None
+    speed_kmh: Annotated[
+        list[Speed] | None, BeforeValidator(lambda v: None if v is None else _speeds_kmh(v))
+    ] = None
+    wheel_profile: Annotated[
+        list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
+    ] = None
+    friction: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
+
+    @model_validator(mode="after")
+    def _one_speed(self) -> Self:
+        if self.speed is not None and self.speed_kmh is not None:
+            raise ValueError("one of speed and speed_kmh")
+        return self
+
+    @property
+    def speeds(self) -> list[Speed] | None:
+        """The speeds, however they are written."""
+        return self.speed if self.speed is not None else self.speed_kmh
+
+    @property
+    def rest(self) -> dict[str, Any]:
+        """Keys for the core: all but speed and wheel profile, which a case has one of."""
+        kept = dict(self.model_extra or {})
+        if self.friction is not None:
+            kept["friction"] = self.friction
+        return kept
+
+
+class Spec(BaseModel):
+    """One spec file."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    id: str = Field(min_length=1)
+    title: str = Field(min_length=1)
+    procedure: str
+    vehicle: str = Field(min_length=1)
+    condition: str | None = None
+    track: dict[str, Any] = Field(default_factory=dict)
+    run: RunPart = Field(default_factory=RunPart)
+    set: dict[str, Any] = Field(default_factory=dict)
+    """Named parameters of the vehicle and keys of the spec; see `overrides`."""
+    criterion: list[Criterion] = Field(min_length=1)
+
+
+KNOWN_KEYS: dict[tuple[str | int, ...], list[str]] = {
+    (): list(Spec.model_fields),
+    ("run",): list(RunPart.model_fields),
+    ("criterion", 0): list(Criterion.model_fields),
+}
+"""Keys allowed in each table, for the nearest known one."""

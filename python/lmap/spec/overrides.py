@@ -1,0 +1,102 @@
+"""One rule for `--set`, `[set]` and Python's `set=`.
+
+A dotted key whose first part is `track`, `run`, `vehicle` or `condition` is a key of the spec; any other is a
+named parameter of the vehicle. Applied before anything is expanded, `[set]` first, then what the caller
+gives. `run.speed_kmh` replaces `run.speed` and the other way round.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from lmap import toml
+from lmap.errors import InputProblem, Problem, nearest_hint
+
+SPEC_KEYS = ("condition", "run", "track", "vehicle")
+"""First parts of a key that mean the spec."""
+
+_SAME: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("run", "speed"): ("run", "speed_kmh"),
+    ("run", "speed_kmh"): ("run", "speed"),
+}
+
+
+def parse(settings: Iterable[str]) -> dict[str, Any]:
+    """`KEY=VALUE` texts as keys and values; a value that is no TOML is a text: `run.speed=110% design`."""
+    parsed: dict[str, Any] = {}
+    problems: list[Problem] = []
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        key, text = key.strip(), text.strip()
+        if not equals or not key or not text:
+            found = f'"{setting}"'
+            problems.append(Problem(key=("--set",), found=found, allowed="KEY=VALUE, e.g. secondary.kz=5e5"))
+            continue
+        parsed[key] = value(text)
+        problems += [
+            Problem(key=(f"--set {key}",), found=text, allowed="a finite number")
+            for _ in toml.not_finite(parsed[key])
+        ]
+    if problems:
+        raise InputProblem(problems)
+    return parsed
+
+
+def value(text: str) -> Any:
+    """A value as TOML writes it, else the text itself."""
+    try:
+        data = toml.loads(f"value = {text}\n")
+    except InputProblem:
+        return text
+    return data["value"] if list(data) == ["value"] else text
+
+
+def is_spec_key(key: str) -> bool:
+    """Whether a key means the spec, not a named parameter of the vehicle."""
+    return key.partition(".")[0] in SPEC_KEYS
+
+
+def split(settings: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Settings of the spec, and named parameters of the vehicle."""
+    own = {key: value for key, value in settings.items() if is_spec_key(key)}
+    return own, {key: value for key, value in settings.items() if key not in own}
+
+
+def apply(document: Mapping[str, Any], settings: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
+    """A spec's document with keys of the spec set, and the keys that cannot be."""
+    changed: dict[str, Any] = copy.deepcopy(dict(document))
+    problems: list[Problem] = []
+    for key, setting in settings.items():
+        path = tuple(key.split("."))
+        if path[0] in ("vehicle", "condition") and len(path) > 1:
+            allowed = f'"{path[0]}" alone, or the name of a parameter of the vehicle'
+            problems.append(Problem(key=("set", key), found=f'"{key}"', allowed=allowed))
+            continue
+        if path[0] in ("track", "run") and (len(path) == 1 or not all(path)):
+            allowed = (
+                f'a key of [{path[0]}], e.g. "{"run.speed_kmh" if path[0] == "run" else "track.length"}"'
+            )
+            hint = nearest_hint(key, ())
+            problems.append(Problem(key=("set", key), found=f'"{key}"', allowed=allowed, hint=hint))
+            continue
+        table = changed
+        for step in path[:-1]:
+            below = table.setdefault(step, {})
+            if not isinstance(below, dict):
+                problems.append(
+                    Problem(
+                        key=("set", key),
+                        found=f'"{key}", where "{step}" is no table',
+                        allowed="a key in a table",
+                    )
+                )
+                break
+            table = below
+        else:
+            table[path[-1]] = setting
+            other = _SAME.get(path)
+            if other is not None:
+                table.pop(other[-1], None)
+    return changed, problems

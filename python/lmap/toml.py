@@ -1,0 +1,127 @@
+"""TOML with line numbers: a thin face of the compiled module's parser.
+
+`tomllib` gives no lines; the core's parser keeps the span of every key, so that a message about
+`run.friction` can name its line whoever found the fault.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from lmap import files
+from lmap.errors import CoreMissing, InputProblem, KeyPath, Problem
+
+
+def core() -> ModuleType:
+    """The compiled module, imported where it is used."""
+    try:
+        from lmap import _railsim
+    except ImportError as error:
+        raise CoreMissing(
+            f"the compiled module lmap._railsim is missing ({error}): install the package"
+        ) from error
+    return _railsim
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A TOML file: its data, and its text for line numbers."""
+
+    path: Path
+    text: str
+    data: Mapping[str, Any]
+
+    @property
+    def shown(self) -> str:
+        """The path as messages show it."""
+        return files.shown(self.path)
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the text."""
+        return files.sha256(self.text)
+
+    def line(self, key: Sequence[str | int]) -> int | None:
+        """The line of a key, or of the nearest key above it that is written; none for one that is nowhere."""
+        return line_of(self.text, key)
+
+    def locate(self, problem: Problem, key: KeyPath | None = None) -> Problem:
+        """The problem with this file's name and line; `key` where the file calls it something else."""
+        key = problem.key if key is None else key
+        return Problem(
+            file=self.shown,
+            key=key,
+            line=self.line(key),
+            found=problem.found,
+            allowed=problem.allowed,
+            hint=problem.hint,
+        )
+
+
+def loads(text: str) -> dict[str, Any]:
+    """The data of a TOML text; an `InputProblem` with the line where it is none."""
+    railsim = core()
+    try:
+        data: dict[str, Any] = json.loads(railsim.toml_to_json(text))
+    except railsim.InputError as error:
+        raise InputProblem(problems_of_core(error)) from None
+    return data
+
+
+def load(path: Path, noun: str) -> Document:
+    """A TOML file; an `InputProblem` with file and line where it cannot be read."""
+    text = files.read_text(path, noun)
+    try:
+        document = Document(path, text, loads(text))
+    except InputProblem as error:
+        raise InputProblem([problem.at(file=files.shown(path)) for problem in error.problems]) from None
+    bad = [
+        document.locate(Problem(found=found, allowed="a finite number", key=key))
+        for key, found in not_finite(document.data)
+    ]
+    if bad:
+        raise InputProblem(bad)
+    return document
+
+
+def not_finite(data: Any, key: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
+    """Key and value of every number in plain data that is NaN or infinite: TOML has them, a case does not."""
+    if isinstance(data, float) and not math.isfinite(data):
+        yield key, str(data)
+    elif isinstance(data, Mapping):
+        for name, value in data.items():
+            yield from not_finite(value, (*key, name))
+    elif isinstance(data, list | tuple):
+        for index, value in enumerate(data):
+            yield from not_finite(value, (*key, index))
+
+
+def line_of(text: str, key: Sequence[str | int]) -> int | None:
+    """The 1-based line of the deepest part of a key path that a TOML text has."""
+    if not key:
+        return None
+    line: int | None = core().toml_line(text, list(key))
+    return line
+
+
+def problems_of_core(error: Exception) -> list[Problem]:
+    """The faults that a core's `InputError` carries."""
+    faults: list[Mapping[str, Any]] = list(getattr(error, "faults", []))
+    if not faults:
+        return [Problem(found=str(error) or type(error).__name__, allowed="valid input")]
+    return [
+        Problem(
+            found=str(fault["found"]),
+            allowed=str(fault["allowed"]),
+            key=tuple(fault.get("key") or ()),
+            line=fault.get("line"),
+            hint=fault.get("hint"),
+        )
+        for fault in faults
+    ]

@@ -1,0 +1,84 @@
+"""Vehicles: loaded by name or path, resolved with overrides and an operating condition."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from lmap import files, toml
+from lmap.errors import InputProblem, Problem
+from lmap.spec.case import VehicleData
+
+
+@dataclass(frozen=True, slots=True)
+class Vehicle:
+    """A vehicle file as written, with what the core reads out of it.
+
+    locomotive = Vehicle.load("coco134")
+    locomotive.data.design_speed           # m/s
+    soft = locomotive.resolve({"secondary.kz": 5e5}, condition="tare")
+    """
+
+    document: toml.Document
+    data: VehicleData
+
+    @classmethod
+    def load(
+        cls,
+        name: str | Path,
+        *,
+        beside: str | Path | None = None,
+        overrides: Mapping[str, Any] | None = None,
+        condition: str | None = None,
+    ) -> Self:
+        """The vehicle with a name that ships, or a file.
+
+        `beside` is the file or folder that names it, the working folder by default. Raises `InputProblem`.
+        """
+        place = Path.cwd() if beside is None else Path(beside)
+        document = toml.load(files.find(files.VEHICLE, str(name), place), "vehicle")
+        return cls(document, _resolve(document, overrides or {}, condition))
+
+    def resolve(self, overrides: Mapping[str, Any] | None = None, condition: str | None = None) -> Self:
+        """The same file with named parameters overridden and an operating condition applied."""
+        return type(self)(self.document, _resolve(self.document, overrides or {}, condition))
+
+
+def _resolve(document: toml.Document, overrides: Mapping[str, Any], condition: str | None) -> VehicleData:
+    railsim = toml.core()
+    try:
+        text = railsim.vehicle_resolve(json.dumps(document.data), json.dumps(dict(overrides)), condition)
+    except railsim.InputError as error:
+        raise InputProblem(
+            [_located(problem, document, overrides) for problem in toml.problems_of_core(error)]
+        ) from None
+    resolved = json.loads(text)
+    return VehicleData(
+        file=document.shown,
+        document=resolved["document"],
+        name=resolved["name"],
+        title=resolved.get("title") or resolved["name"],
+        design_speed=float(resolved["design_speed"]),
+        wheel_radius=float(resolved["wheel_radius"]),
+        wheel_profile=resolved.get("wheel_profile"),
+        track=resolved.get("track"),
+        condition=condition,
+        conditions=tuple(resolved.get("conditions", ())),
+        mass=resolved.get("mass"),
+        bodies=tuple(resolved.get("bodies", ())),
+    )
+
+
+def _located(problem: Problem, document: toml.Document, overrides: Mapping[str, Any]) -> Problem:
+    """The fault with the vehicle's file and line; where an override is at fault, its name alone."""
+    key = problem.key
+    if key[:1] == ("vehicle",) and "vehicle" not in document.data:
+        key = key[1:]
+    tail = key[1:] if key[:1] in (("parameters",), ("overrides",), ("set",)) else key
+    name = ".".join(map(str, tail))
+    if name in overrides:
+        return Problem(key=("set", name), found=problem.found, allowed=problem.allowed, hint=problem.hint)
+    return document.locate(problem, key)
