@@ -1,5 +1,7 @@
 //! Contract of every integrator: order, exactness, energy, restart, work, and no allocation in a step.
 
+#![allow(clippy::unwrap_used, reason = "test helpers")]
+
 use std::alloc::{GlobalAlloc, Layout, System as SystemAllocator};
 use std::cell::Cell;
 
@@ -148,7 +150,7 @@ fn observed_order_is_the_stated_one_whatever_the_jacobian() {
         for jacobian in [Jacobian::Exact, Jacobian::Wrong, Jacobian::Zero, Jacobian::None] {
             let errors = [100, 200, 400].map(|n| error_at_end(&integrator, jacobian, n));
             let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
-            println!("{:5} {jacobian:?}: errors {errors:.3e?}, orders {orders:.3?}", integrator.name());
+            println!("{:5} {jacobian:?}: errors {errors:?}, orders {orders:.3?}", integrator.name());
             let expected = f64::from(integrator.order());
             assert!((orders[1] - expected).abs() < 0.15, "{} {jacobian:?}: {orders:?}", integrator.name());
         }
@@ -156,16 +158,14 @@ fn observed_order_is_the_stated_one_whatever_the_jacobian() {
 }
 
 #[test]
-fn ros2_without_jacobian_is_heun_to_rounding() {
+fn ros2_without_stiff_blocks_is_heun_to_rounding() {
     let [heun, ros2] = [Integrator::Heun { step: 0.01 }, Integrator::Ros2 { step: 0.01 }];
-    for jacobian in [Jacobian::Zero, Jacobian::None] {
-        let (mut a, mut b) = (Driven::solution(0.0), Driven::solution(0.0));
-        run(&heun, &mut Driven::new(jacobian), &mut a, 0.0, 0.01, 300);
-        run(&ros2, &mut Driven::new(jacobian), &mut b, 0.0, 0.01, 300);
-        // 300 steps of a few roundings of values up to 10 each.
-        for (a, b) in a.iter().zip(b) {
-            assert!((a - b).abs() < 1e-13, "{a} {b}");
-        }
+    let (mut a, mut b) = (Driven::solution(0.0), Driven::solution(0.0));
+    run(&heun, &mut Driven::new(Jacobian::None), &mut a, 0.0, 0.01, 300);
+    run(&ros2, &mut Driven::new(Jacobian::None), &mut b, 0.0, 0.01, 300);
+    // 300 steps of a few roundings of values up to 10 each.
+    for (a, b) in a.iter().zip(b) {
+        assert!((a - b).abs() < 1e-13, "{a} {b}");
     }
 }
 

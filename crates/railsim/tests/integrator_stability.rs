@@ -1,5 +1,7 @@
 //! Stability where a wheelset on its track mass needs it: 2500 rad/s and soft modes beside it.
 
+#![allow(clippy::unwrap_used, reason = "test helpers")]
+
 use nalgebra::{DMatrix, Matrix2};
 use railsim::integrator::{Integrator, ROS2_GAMMA, StepEnd, Stepper, StiffBlock, System};
 

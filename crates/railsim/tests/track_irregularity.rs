@@ -1,5 +1,7 @@
 //! Contract of every irregularity, and the spectra against their laws and against the published extremes.
 
+#![allow(clippy::unwrap_used, reason = "test helpers")]
+
 use railsim::error::{Error, KeyPath};
 use railsim::math::fft;
 use railsim::track::irregularity::{
@@ -237,19 +239,29 @@ fn monte_carlo_of_class_6_has_the_extremes_of_an_independent_one() {
         (Channel::Gauge, 3.67, 0.41),
     ];
     let seeds = 200;
-    let mut largest = [const { Vec::<f64>::new() }; 4];
+    let mut greatest = [const { Vec::<f64>::new() }; 4];
+    let mut largest = greatest.clone();
     for seed in 0..seeds {
         let field = field(&[Irregularity::Psd(class_6(seed, GaugeSeries::Independent))], 1000.0);
-        for (list, (least, greatest)) in largest.iter_mut().zip(field.extremes()) {
-            list.push(1e3 * greatest.max(-least));
+        for (i, (min, max)) in field.extremes().into_iter().enumerate() {
+            greatest[i].push(1e3 * max);
+            largest[i].push(1e3 * max.max(-min));
         }
     }
     for (channel, mean, deviation) in theirs {
-        let (ours, spread) = moments(&largest[channel.index()]);
-        println!("{channel:?}: ours {ours:.2} +- {spread:.2} mm, theirs {mean} +- {deviation} mm");
-        // Standard errors of both means together: s.d. sqrt(1/200 + 1/300) = 0.09 s.d.; three and a half of them. The
-        // spread of 200 values is itself known to 5 %, theirs to 4 %: three of both together.
-        assert!((ours - mean).abs() < 0.32 * deviation, "{channel:?}");
+        let (ours, spread) = moments(&greatest[channel.index()]);
+        let (absolute, _) = moments(&largest[channel.index()]);
+        println!(
+            "{channel:?}: ours {ours:.2} +- {spread:.2} mm, theirs {mean} +- {deviation} mm; ours in absolute value {absolute:.2}"
+        );
+    }
+    for (channel, mean, deviation) in theirs {
+        let (ours, spread) = moments(&greatest[channel.index()]);
+        // Standard errors of both means together: s.d. sqrt(1/200 + 1/300) = 0.09 s.d., three of them; and 3.5 % of
+        // convention, all one way: the harmonic at the edge of the band (40 m, k = 25) counts fully here; without it our
+        // means are 5.88, 5.39, 3.93, 3.74 mm on a grid of 0.5 m. The spread of 200 values is itself known to 5 %,
+        // theirs to 4 %: three of both together.
+        assert!((ours - mean).abs() < 0.28 * deviation + 0.035 * mean, "{channel:?}");
         assert!((spread / deviation - 1.0).abs() < 0.20, "{channel:?}");
     }
 }

@@ -1,5 +1,7 @@
 //! The design line against closed forms and against its own derivatives.
 
+#![allow(clippy::unwrap_used, reason = "test helpers")]
+
 use proptest::prelude::*;
 use railsim::error::{Error, KeyPath};
 use railsim::math::{Mat3, Vec3};
@@ -78,7 +80,7 @@ fn a_helix_rises_with_its_gradient() {
     let (sg, cg) = 0.04_f64.atan().sin_cos();
     for s in [0.0, 123.4, 377.0, 500.0] {
         // Heading turns by s/R, so the radius in plan is R cos(gradient).
-        let angle = s / 200.0;
+        let angle: f64 = s / 200.0;
         let expected = Vec3::new(200.0 * cg * angle.sin(), 200.0 * cg * (1.0 - angle.cos()), -sg * s);
         assert!((layout.frame(s).r_IT - expected).norm() < 1e-11);
     }
@@ -277,6 +279,8 @@ fn all_faults_are_collected_with_their_keys() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     // Any two constant segments joined by a clothoid: unit direction, orthonormal axes, derivative = direction.
     #[test]
     fn derivative_is_the_direction(

@@ -150,7 +150,9 @@ pub fn place(
     // On an inclined surface a yawed wheel touches ahead of the axle (flange side outwards-yawed): the normal of
     // its surface of revolution has no forward component where sin(eps) = tan(yaw) tan(gamma).
     let lead = (radius + contact.z_wheel) * yaw * sin_g / cos_g;
-    let lever = Vec3::new(lead, y - q[1], z - q[2]);
+    // The wheel itself stands behind or ahead of the axle's centre, turned there by yaw with the axle.
+    let across = y - q[1];
+    let lever = Vec3::new(lead - across * q[5].tan(), across, z - q[2]);
 
     let w_T = k.R_TB * k.w_B;
     let v_wheel = k.v_T + w_T.cross(&lever);

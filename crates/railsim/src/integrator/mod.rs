@@ -51,7 +51,7 @@ pub trait System {
 
     /// Fills K and C (n by n, row-major) of d(vel)/dt ~ -K pos - C vel + ... of stiff block `block`, at the state
     /// of the *last* call of [`Self::rhs`]. They may be approximate: accuracy of order two does not depend on
-    /// them, stability does (see [`Integrator::Ros2`]). Zero, the default, makes the block explicit.
+    /// them, stability does ([`ROS2_GAMMA`]). With zeros, the default, only d(pos)/dt = vel is implicit.
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
         let _ = block;
         k.fill(0.0);

@@ -27,15 +27,17 @@ pub struct Stability {
     pub radius: f64,
 }
 
-/// Checks the step at the state last evaluated by `system`.
+/// Checks the step at the state `x`, on the design track.
 ///
 /// # Errors
 /// [`Error::Input`] at `run.integrator.step` with the largest step found stable.
 pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator) -> Result<Stability> {
+    let irregular = std::mem::replace(&mut system.irregular, false);
     let j = jacobian(system, 0.0, x);
     let mut dx = vec![0.0; x.len()];
     system.rhs(0.0, x, &mut dx);
     let a = stiff_part(system);
+    system.irregular = irregular;
     let Some(eigenvalues) = eigenvalues(&j) else {
         return Err(Error::NotConverged {
             what: "eigenvalues of the vehicle at the start".into(),

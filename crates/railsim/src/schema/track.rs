@@ -14,7 +14,7 @@ pub struct Track {
     pub name: Option<String>,
     /// One line for people.
     pub title: Option<String>,
-    /// Length that the vehicle's centre travels, m.
+    /// Length, m: a run goes from the first wheelset at 0 to the first wheelset here.
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
     pub length: f64,
     /// Gauge, m.

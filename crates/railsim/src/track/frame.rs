@@ -1,5 +1,6 @@
 //! The track-following frame T.
 
+use crate::math::angle::SinCos;
 use crate::math::{Mat3, Vec3};
 
 /// Track-following frame T at one arc length s of the design line: origin on the centre line at top of rail, x along
@@ -20,9 +21,9 @@ pub struct Frame {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Attitude {
     /// Sine and cosine of heading (+ right), gradient (+ uphill) and cant (+ right rail lower).
-    pub heading: (f64, f64),
-    pub gradient: (f64, f64),
-    pub cant: (f64, f64),
+    pub heading: SinCos,
+    pub gradient: SinCos,
+    pub cant: SinCos,
     /// First derivatives of the three angles with respect to s, rad/m.
     pub first: [f64; 3],
     /// Second derivatives, rad/m2.
@@ -45,7 +46,7 @@ impl Frame {
 
 impl Attitude {
     /// Unit vector along the line, inertial axes.
-    pub fn direction(heading: (f64, f64), gradient: (f64, f64)) -> Vec3 {
+    pub fn direction(heading: SinCos, gradient: SinCos) -> Vec3 {
         Vec3::new(heading.1 * gradient.1, heading.0 * gradient.1, -gradient.0)
     }
 

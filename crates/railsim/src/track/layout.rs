@@ -13,15 +13,34 @@ use super::segment::{Ends, Segment, faults};
 use super::transition::Transition;
 use crate::error::{Error, KeyPath, Result};
 use crate::math::Vec3;
+use crate::math::angle::{self, SinCos};
 use crate::math::quadrature::GAUSS_4;
 
 /// Nodes stand so close that the line turns by no more than this between two of them, rad.
 const TURN_PER_CELL: f64 = 0.1;
+
+/// The line at one point: origin, heading and gradient.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    r_IT: Vec3,
+    heading: SinCos,
+    gradient: SinCos,
+}
+
+/// The line at the start of a cell, with its angles (rad) as numbers.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    line: Line,
+    heading: f64,
+    gradient: f64,
+}
+
 /// A segment compiled.
 #[derive(Debug, Clone)]
 struct Piece {
     start: f64,
     length: f64,
+    per_length: f64,
     transition: Transition,
     /// At the start and what is added along the piece: heading per metre, sine of cant, gradient angle.
     curvature: [f64; 2],
@@ -29,12 +48,10 @@ struct Piece {
     gradient: [f64; 2],
     /// Heading at the start, rad.
     heading: f64,
-    /// Constant throughout: position in closed form, no cells.
+    /// Curvature and gradient constant: the line is a closed form, one node is enough.
     uniform: bool,
-    /// Sine and cosine of the gradient at the start (throughout where it is constant).
-    gradient_start: (f64, f64),
-    /// Origins at the ends of equal cells; the first is the start of the piece.
-    nodes: Vec<Vec3>,
+    /// The line at the starts of equal cells; the first is the start of the piece.
+    nodes: Vec<Node>,
     cell: f64,
     /// Frame at the start: all that is needed on uniform straight track.
     first: Frame,
@@ -50,21 +67,22 @@ impl Piece {
         let mut piece = Self {
             start,
             length,
+            per_length: 1.0 / length,
             transition: Transition::Linear,
             curvature,
             cant: rise(|e| cant::sine(e.cant_mm)),
             gradient,
             heading,
             uniform: curvature[1] == 0.0 && gradient[1] == 0.0,
-            gradient_start: gradient[0].sin_cos(),
-            nodes: vec![r_IT],
+            nodes: Vec::new(),
             cell: length / cells,
             first: Frame::level(0.0),
         };
+        piece.nodes.push(piece.node(0.0, r_IT));
         if !piece.uniform {
             for k in 1..cells as usize {
-                let origin = piece.position(k as f64 * piece.cell);
-                piece.nodes.push(origin);
+                let u = k as f64 * piece.cell;
+                piece.nodes.push(piece.node(u, piece.line(u).r_IT));
             }
         }
         piece.first = piece.frame(0.0);
@@ -84,42 +102,69 @@ impl Piece {
         let [k0, rise] = self.curvature;
         let mut heading = self.heading + k0 * u;
         if rise != 0.0 {
-            heading += rise * self.length * self.transition.at(u / self.length).integral;
+            heading += rise * self.length * self.transition.at(u * self.per_length).integral;
         }
         heading
     }
 
-    fn gradient_at(&self, u: f64) -> (f64, f64) {
-        if self.gradient[1] == 0.0 {
-            return self.gradient_start;
-        }
-        (self.gradient[0] + self.gradient[1] * self.transition.at(u / self.length).value).sin_cos()
+    fn gradient_at(&self, u: f64) -> f64 {
+        let [start, rise] = self.gradient;
+        if rise == 0.0 { start } else { start + rise * self.transition.at(u * self.per_length).value }
     }
 
-    /// Origin at distance `u` from the start of the piece.
-    fn position(&self, u: f64) -> Vec3 {
-        if self.uniform {
-            // Chord of the arc: length u sinc(k u/2) in the direction of its middle.
-            let half = 0.5 * self.curvature[0] * u;
-            let sinc = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { half.sin() / half };
-            let (sh, ch) = (self.heading + half).sin_cos();
-            let (sg, cg) = self.gradient_start;
-            return self.nodes[0] + u * Vec3::new(ch * cg * sinc, sh * cg * sinc, -sg);
+    fn node(&self, u: f64, r_IT: Vec3) -> Node {
+        let (heading, gradient) = (self.heading_at(u), self.gradient_at(u));
+        Node {
+            line: Line { r_IT, heading: heading.sin_cos(), gradient: gradient.sin_cos() },
+            heading,
+            gradient,
         }
-        let node = ((u / self.cell) as usize).min(self.nodes.len() - 1);
-        let from = node as f64 * self.cell;
+    }
+
+    /// The line at distance `u` from the start of the piece.
+    fn line(&self, u: f64) -> Line {
+        if self.uniform { self.arc(u) } else { self.passage(u) }
+    }
+
+    /// Constant curvature and gradient: the chord u sinc(k u/2) in the direction of its middle.
+    fn arc(&self, u: f64) -> Line {
+        let Line { r_IT, heading, gradient } = self.nodes[0].line;
+        let half = 0.5 * self.curvature[0] * u;
+        let (sin, cos) = half.sin_cos();
+        let sinc = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { sin / half };
+        let middle = angle::add(heading, (sin, cos));
+        let mut chord = Attitude::direction(middle, gradient);
+        chord.x *= sinc;
+        chord.y *= sinc;
+        Line { r_IT: r_IT + u * chord, heading: angle::add(middle, (sin, cos)), gradient }
+    }
+
+    /// From the start of the cell on, by quadrature; the angles differ little from those of the node.
+    fn passage(&self, u: f64) -> Line {
+        let index = ((u / self.cell) as usize).min(self.nodes.len() - 1);
+        let node = &self.nodes[index];
+        let from = index as f64 * self.cell;
+        let angles = |u: f64| {
+            let heading = angle::add(node.line.heading, angle::small(self.heading_at(u) - node.heading));
+            if self.gradient[1] == 0.0 {
+                return (heading, node.line.gradient);
+            }
+            (heading, angle::add(node.line.gradient, angle::small(self.gradient_at(u) - node.gradient)))
+        };
         let half = 0.5 * (u - from);
         let mut sum = Vec3::zeros();
         for (x, weight) in GAUSS_4 {
-            let v = from + half * (1.0 + x);
-            sum += weight * Attitude::direction(self.heading_at(v).sin_cos(), self.gradient_at(v));
+            let (heading, gradient) = angles(from + half * (1.0 + x));
+            sum += weight * Attitude::direction(heading, gradient);
         }
-        self.nodes[node] + half * sum
+        let (heading, gradient) = angles(u);
+        Line { r_IT: node.line.r_IT + half * sum, heading, gradient }
     }
 
     fn frame(&self, u: f64) -> Frame {
-        let shape = self.transition.at(u / self.length);
-        let (slope, second) = (shape.slope / self.length, shape.second / (self.length * self.length));
+        let shape = self.transition.at(u * self.per_length);
+        let (slope, second) =
+            (shape.slope * self.per_length, shape.second * self.per_length * self.per_length);
         let along = |[start, rise]: [f64; 2]| (start + rise * shape.value, rise * slope, rise * second);
         let (curvature, curvature_slope, _) = along(self.curvature);
         let (sine, sine_slope, sine_second) = along(self.cant);
@@ -128,14 +173,15 @@ impl Piece {
         let cosine = (1.0 - sine * sine).sqrt();
         let cant_slope = sine_slope / cosine;
         let cant_second = (sine_second + cant_slope * cant_slope * sine) / cosine;
+        let Line { r_IT, heading, gradient } = self.line(u);
         let attitude = Attitude {
-            heading: self.heading_at(u).sin_cos(),
-            gradient: self.gradient_at(u),
+            heading,
+            gradient,
             cant: (sine, cosine),
             first: [curvature, gradient_slope, cant_slope],
             second: [curvature_slope, gradient_second, cant_second],
         };
-        attitude.frame(self.position(u))
+        attitude.frame(r_IT)
     }
 }
 
@@ -255,7 +301,7 @@ impl Layout {
     fn value(&self, s: f64, of: impl Fn(&Piece) -> [f64; 2]) -> Option<f64> {
         self.piece(s).map(|(piece, u)| {
             let [start, rise] = of(piece);
-            start + rise * piece.transition.at(u / piece.length).value
+            start + rise * piece.transition.at(u * piece.per_length).value
         })
     }
 

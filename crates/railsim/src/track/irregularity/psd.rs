@@ -311,18 +311,19 @@ impl Realisation {
     /// Values and slopes at `s`.
     #[inline]
     pub fn at(&self, s: f64) -> Node {
-        let x = s.rem_euclid(self.period) / self.cell;
-        // rem_euclid may round up to the period itself: index 0 of the next turn.
+        // The distance into the period; rounding may give the period itself: node 0 of the next turn.
+        let x = (s - (s / self.period).floor() * self.period) / self.cell;
         let index = x as usize;
-        let fraction = x - index as f64;
-        let left = &self.nodes[index % self.nodes.len()];
-        let right = &self.nodes[(index + 1) % self.nodes.len()];
-        let Hermite { value, slope } = Hermite::at(fraction, self.cell);
+        let count = self.nodes.len();
+        // `new` makes the number of nodes a power of two.
+        let left = &self.nodes[index & (count - 1)];
+        let right = &self.nodes[(index + 1) & (count - 1)];
+        let Hermite { value: v, slope: d } = Hermite::at(x - index as f64, self.cell);
         let mut out = [0.0; 8];
         for i in 0..4 {
             let ends = [left[i], right[i], left[i + 4], right[i + 4]];
-            out[i] = value.iter().zip(ends).map(|(w, e)| w * e).sum();
-            out[i + 4] = slope.iter().zip(ends).map(|(w, e)| w * e).sum();
+            out[i] = v[0] * ends[0] + v[1] * ends[1] + v[2] * ends[2] + v[3] * ends[3];
+            out[i + 4] = d[0] * ends[0] + d[1] * ends[1] + d[2] * ends[2] + d[3] * ends[3];
         }
         out
     }
