@@ -11,7 +11,8 @@ SITE := $(VENV)/.installed
 MODULE := python/lmap/_railsim.abi3.so
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-# One interpreter for every cargo call that builds the binding, so that they share what they build.
+# For cargo calls that build the binding without maturin. Clippy builds in a place of its own: it and maturin set
+# pyo3's environment differently, and each would make the other compile pyo3 again.
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 # A binding built elsewhere must not hide ours.
 unexport PYTHONPATH
@@ -47,7 +48,7 @@ format: dev
 
 lint: dev
 	$(BIN)/ruff check .
-	cargo clippy --quiet --locked --workspace --all-targets -- -D warnings
+	cargo clippy --quiet --locked --workspace --all-targets --target-dir target/lint -- -D warnings
 
 types: dev
 	$(BIN)/mypy
