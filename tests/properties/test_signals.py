@@ -57,7 +57,7 @@ def test_average_peak_is_the_brute_force_best_window_and_never_above_the_largest
             low, high = max(begin, t[j] - window), min(last, t[i])
             before = t[i - 1] if i > 0 else -np.inf
             after = t[j + 1] if j + 1 < len(t) else np.inf
-            if low <= high + 1e-12 and max(low, before) < min(high, after - window) + 1e-12:
+            if low <= high and max(low, before) < min(high, after - window) - 1e-9:
                 mean = height[i : j + 1].mean()
                 best = mean if best is None else max(best, mean)
     if best is None:
