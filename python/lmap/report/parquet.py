@@ -1,7 +1,7 @@
 """A case's frame as parquet that explains itself: units, meanings and the case's hash as file metadata.
 
-polars keeps no metadata of columns, so it stands in the file's own: `lmap.channels`, a JSON list of name, unit
-and meaning of every column, and `lmap.case`, the hash. Nothing in the file depends on when it was written.
+polars keeps no metadata of columns, so it stands in the file itself: `lmap.channels`, a JSON list of name,
+unit and meaning of every column, and `lmap.case`, the hash. Nothing in it depends on when it was written.
 """
 
 from __future__ import annotations
