@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import shutil
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -47,9 +46,9 @@ def fake_core(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 @pytest.fixture
-def toy(tmp_path: Path, fake_core: ModuleType, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def toy(tmp_path: Path, fake_core: ModuleType, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working folder with a toy vehicle, track, profiles and a spec, on the stand-in core."""
     folder = tmp_path / "toy"
     shutil.copytree(TESTS / "fixtures" / "toy", folder)
     monkeypatch.chdir(folder)
-    yield folder
+    return folder

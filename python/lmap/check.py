@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 def check(
     specs: str | Path | Iterable[str | Path],
     *,
-    set: Mapping[str, Any] | None = None,
+    set: Mapping[str, Any] | None = None,  # noqa: A002 -- named as in specs
     jobs: int | None = None,
     report: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Acceptance:
     """Simulates and judges specs: files, folders, names (`hunting`) or ids (`2C.1`) of tests that ship.
 
-    `set` overrides keys of the specs and named parameters of their vehicles, `jobs` is the number of threads (default:
-    all processors), `report` a folder to write. Every spec is read, expanded and checked before the first one runs;
-    an `InputProblem` carries everything that is wrong with any of them.
+    `set` overrides keys of the specs and named parameters of their vehicles, `jobs` is the number of threads
+    (default: all processors), `report` a folder to write. Every spec is read, expanded and checked before the
+    first one runs; an `InputProblem` carries everything that is wrong with any of them.
     """
     begun = time.perf_counter()
     given = [specs] if isinstance(specs, str | Path) else list(specs)

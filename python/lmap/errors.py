@@ -1,7 +1,7 @@
 """Exceptions of the package, and the exit codes that the command line makes of them.
 
-Messages about input name the file, the key path, the line where the file gives one, what was found and what is
-allowed. All faults of an input are collected before anything is raised.
+Messages about input name the file, the key path, the line where the file gives one, what was found and what
+is allowed. All faults of an input are collected before anything is raised.
 """
 
 from __future__ import annotations
@@ -120,7 +120,8 @@ def problems_of_validation(
 ) -> list[Problem]:
     """Faults from pydantic's `ValidationError.errors()`, in our words.
 
-    `known` names the keys allowed in a table, by the table's key path (indices as 0); it gives the nearest known key.
+    `known` names the keys allowed in a table, by the table's key path (indices as 0); it gives the nearest
+    known key.
     """
     problems = []
     for error in errors:

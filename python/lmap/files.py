@@ -1,8 +1,8 @@
-"""Finding what ships: vehicles, tracks, profiles and specs by name; and reading text files with clear messages.
+"""Finding what ships by name: vehicles, tracks, profiles and specs; and reading text files.
 
 A name is looked for beside the file that names it and upwards (`models/vehicles/<name>.toml`), then in the
-package's own data, then, in a source checkout, below the repository's root. What has a slash in it or ends in the
-file's suffix is a path, seen from the file that names it.
+package's own data, then, in a source checkout, below the repository's root. What has a slash in it or ends in
+the file's suffix is a path, seen from the file that names it.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _places(kind: Kind, beside: Path) -> Iterator[Path]:
 
 
 def find(kind: Kind, name: str, beside: Path) -> Path:
-    """The file that a name means, seen from the file or folder `beside`; an `InputProblem` where there is none."""
+    """The file that a name means, seen from the file or folder `beside`; else an `InputProblem`."""
     if kind.is_path(name):
         folder = beside if beside.is_dir() else beside.parent
         path = folder / name

@@ -1,4 +1,4 @@
-"""From a spec file to cases that are ready to run: everything that can be wrong is found here, before anything runs."""
+"""From a spec file to cases that are ready to run: what can be wrong is found here, before anything runs."""
 
 from __future__ import annotations
 

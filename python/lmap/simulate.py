@@ -25,8 +25,8 @@ class Channel(NamedTuple):
 def simulate(case: Case | Mapping[str, Any] | str) -> pl.DataFrame:
     """The channels of one case: `t` (s), `s` (m), then dotted names.
 
-    `case` is a case, its plain data or its JSON (as in a report's `cases/`). Raises `InputProblem` for a case that is
-    none, `SimulationProblem` for a run that the core could not finish.
+    `case` is a case, its plain data or its JSON (as in a report's `cases/`). Raises `InputProblem` for a case
+    that is none, `SimulationProblem` for a run that the core could not finish.
     """
     from lmap.execute.local import run_cases
 

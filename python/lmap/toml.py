@@ -1,7 +1,7 @@
 """TOML with line numbers: a thin face of the compiled module's parser.
 
-`tomllib` gives no lines; the core's parser keeps the span of every key, so that a message about `run.friction` can
-name its line whoever found the fault.
+`tomllib` gives no lines; the core's parser keeps the span of every key, so that a message about
+`run.friction` can name its line whoever found the fault.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Document:
         return files.sha256(self.text)
 
     def line(self, key: Sequence[str | int]) -> int | None:
-        """The line where a key is written, or the nearest key above it that is; none for a key that is nowhere."""
+        """The line of a key, or of the nearest key above it that is written; none for one that is nowhere."""
         return line_of(self.text, key)
 
     def locate(self, problem: Problem, key: KeyPath | None = None) -> Problem:

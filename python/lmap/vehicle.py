@@ -73,7 +73,7 @@ def _resolve(document: toml.Document, overrides: Mapping[str, Any], condition: s
 
 
 def _located(problem: Problem, document: toml.Document, overrides: Mapping[str, Any]) -> Problem:
-    """The fault with the vehicle's file and line, or, where an override is at fault, with the override's name alone."""
+    """The fault with the vehicle's file and line; where an override is at fault, its name alone."""
     key = problem.key
     if key[:1] == ("vehicle",) and "vehicle" not in document.data:
         key = key[1:]

@@ -1,8 +1,8 @@
 """What a check found: outcomes with margins, and the results they were read from.
 
 A criterion is judged in each case on the worst of its signals; a spec's verdict is its worst criterion, an
-acceptance's the worst of its specs. Nothing here computes: these are the plain results that terminal, report and
-JSON read.
+acceptance's the worst of its specs. Nothing here computes: these are the plain results that terminal, report
+and JSON read.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Outcome(StrEnum):
 
     @property
     def exit_code(self) -> int:
-        """0 when passed, 1 when something fails or waits for a person or for data, 2 when it could not be judged."""
+        """0 passed, 1 something fails or waits for a person or for data, 2 it could not be judged."""
         match self:
             case Outcome.PASS:
                 return 0
@@ -54,8 +54,8 @@ _SEVERITY = [Outcome.PASS, Outcome.NOT_ASSESSED, Outcome.MANUAL, Outcome.FAIL, O
 class CriterionVerdict:
     """One criterion in one case.
 
-    `value`, `bounds` and `margin` are in `unit`. A criterion without a limit is printed, not judged: `judged` is
-    false, its outcome is a pass and its limit and margin are empty.
+    `value`, `bounds` and `margin` are in `unit`. A criterion without a limit is printed, not judged: `judged`
+    is false, its outcome is a pass and its limit and margin are empty.
     """
 
     index: int
@@ -128,7 +128,7 @@ class CaseResult:
     frame: pl.DataFrame
     """Channels as the core recorded them."""
     quantities: pl.DataFrame
-    """What the criteria judged: the frame itself, or what the procedure computed from it. Plot from this one."""
+    """What the criteria judged: the frame, or what the procedure computed from it. Plot from this one."""
     ended: Mapping[str, Any]
     """How the run ended: `kind` (`end_of_track` or `diverged`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any]

@@ -1,7 +1,7 @@
 """A stand-in for the compiled core: the same interface, sinusoids for physics.
 
-It lets the Python package be tested alone. Faults are worded like the core's, but what the core says is tested with
-the core.
+It lets the Python package be tested alone. Faults are worded like the core's, but what the core says is
+tested with the core.
 """
 
 from __future__ import annotations
@@ -128,10 +128,8 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
 
 
 def read_profile(text: str, name: str) -> str:
-    points = []
-    for line in text.splitlines():
-        if line and not line.startswith("#") and not line[0].isalpha():
-            points.append([float(word) for word in line.split(",")])
+    lines = [line for line in text.splitlines() if line and not line.startswith("#") and not line[0].isalpha()]
+    points = [[float(word) for word in line.split(",")] for line in lines]
     if len(points) < 8:
         raise InputError([_fault(["profiles", name, "points"], f"{len(points)} points", "8 or more")])
     return json.dumps({"points": points})

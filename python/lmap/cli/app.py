@@ -1,7 +1,7 @@
 """The command line: `lmap COMMAND ...`, one file per command.
 
-Exit codes: 0 everything passes, 1 a criterion fails or waits for a person or for data, 2 bad input or something that
-could not be judged, 130 stopped by Ctrl-C. Data goes to stdout, the rest to stderr.
+Exit codes: 0 everything passes, 1 a criterion fails or waits for a person or for data, 2 bad input or
+something that could not be judged, 130 stopped by Ctrl-C. Data goes to stdout, the rest to stderr.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
     name="lmap",
-    help="Simulate railway locomotives and judge them by the locomotive model acceptance procedure (LMAP).\n\n"
+    help="Simulate railway locomotives and judge them by the locomotive model acceptance procedure.\n\n"
     "Example: lmap check hunting --report out/",
     no_args_is_help=True,
     add_completion=False,
@@ -70,8 +70,8 @@ def main() -> NoReturn:
         _leave(EXIT_ERROR)
     except SystemExit:
         raise
-    except BaseException as error:
-        # usage errors show themselves; anything else is a fault of ours (a panic in the core is no Exception), and
+    except BaseException as error:  # noqa: BLE001
+        # usage errors show themselves; anything else is our fault (a panic in the core is no Exception) and
         # must not leave with the code of a criterion that fails
         show = getattr(error, "show", None)
         if show is not None:

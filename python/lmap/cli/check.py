@@ -25,7 +25,7 @@ def check(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="Override a key of the spec (run.speed_kmh=130) or a named parameter of the vehicle; repeatable.",
+            help="Override a key of the spec (run.speed_kmh=130) or a named parameter of the vehicle.",
         ),
     ] = None,
     jobs: Annotated[
@@ -35,8 +35,8 @@ def check(
 ) -> None:
     """Simulate and judge specs: a table of criteria with value, limit and margin.
 
-    Progress goes to stderr. Exit code: 0 everything passes, 1 something fails or waits, 2 bad input or not to be
-    judged, 130 stopped by Ctrl-C.
+    Progress goes to stderr. Exit code: 0 everything passes, 1 something fails or waits, 2 bad input or not to
+    be judged, 130 stopped by Ctrl-C.
 
     Example: lmap check hunting --report out/ --set secondary.kz=5e5 --jobs 2
     """

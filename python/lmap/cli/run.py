@@ -22,8 +22,8 @@ def run(
 ) -> None:
     """Run one case and write its channels to a parquet file.
 
-    The file carries the channels' units and meanings as metadata. Exit code: 0 the run reached its end, 2 it did not
-    (what it recorded is not written) or the case is none, 130 stopped by Ctrl-C.
+    The file carries the channels' units and meanings as metadata. Exit code: 0 the run reached its end, 2 it
+    did not (what it recorded is not written) or the case is none, 130 stopped by Ctrl-C.
 
     Example: lmap run out/cases/0f3a....json --output run.parquet
     """

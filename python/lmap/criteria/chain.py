@@ -134,7 +134,7 @@ class Criterion(BaseModel):
         return self.published.get(label, self.published.get(""))
 
     def links(self) -> list[Link]:
-        """The chain's links; a chain with faults raises pydantic's error or a `KeyError` (see `chain_problems`)."""
+        """The chain's links; those with faults (see `chain_problems`) are left out."""
         return [link for link, _ in (_link(table) for table in self.chain) if link is not None]
 
     def written(self) -> dict[str, Any]:
@@ -157,7 +157,7 @@ def _link(table: Mapping[str, Any]) -> tuple[Link | None, list[Problem]]:
     try:
         return kind.model_validate(parameters), []
     except ValidationError as error:
-        known = {(): list(kind.model_fields)}
+        known: dict[KeyPath, list[str]] = {(): list(kind.model_fields)}
         found_ = problems_of_validation(error.errors(include_url=False), known)
         return None, [problem.at(prefix=(name,)) for problem in found_]
 
@@ -241,10 +241,10 @@ def trace(
     given: str = "1",
     wanted: str = "1",
 ) -> list[Stage]:
-    """The signal, what each filter makes of it and, where the statistic has one, its curve along the run; for plots.
+    """The signal, what each filter makes of it and, where there is one, the statistic's curve; for plots.
 
-    Values are converted from the unit `given` (of the channel) to `wanted` (of the criterion). Raises what judging
-    would raise, a `JudgementProblem`.
+    Values are converted from the unit `given` (of the channel) to `wanted` (of the criterion). Raises what
+    judging would raise, a `JudgementProblem`.
     """
     stages, reading = _run(frame, chain, signal, _factor(signal, given, wanted))
     if reading.curve is not None:
@@ -296,8 +296,8 @@ def judge(
 ) -> CriterionVerdict:
     """The criterion in one case, on the worst of its signals.
 
-    `ended` says why a run ended before it should have: then nothing can be judged. A missing signal, a NaN, an empty
-    window or a unit that does not compare is an error, never a pass.
+    `ended` says why a run ended before it should have: then nothing can be judged. A missing signal, a NaN,
+    an empty window or a unit that does not compare is an error, never a pass.
     """
     names = expand(criterion.signal, frame.columns)
     missing = [pattern for pattern in criterion.signal if not expand([pattern], frame.columns)]

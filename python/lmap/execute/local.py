@@ -93,7 +93,7 @@ def _outcome(result: Any, wall_s: float, error: type[Exception]) -> CaseOutcome:
         return CaseOutcome(None, {"kind": "error", "message": str(result)}, wall_s=wall_s)
     statistics = dict(result.statistics)
     ended = dict(result.ended)
-    return CaseOutcome(pl.DataFrame(result), ended, statistics, float(statistics.get("wall_s", wall_s)))
+    return CaseOutcome(pl.DataFrame(result), ended, statistics, float(getattr(result, "wall_s", wall_s)))
 
 
 def _length(case: Case) -> float | None:

@@ -47,12 +47,14 @@ class Lines(Progress):
         self._said: list[int] = []
 
     def begin(self, cases: Sequence[tuple[str, float | None]], jobs: int) -> None:
+        """Says how many there are."""
         self._cases = list(cases)
         self._said = [0] * len(cases)
         noun = "case" if len(cases) == 1 else "cases"
         self._say(f"running {len(cases)} {noun} on {jobs} thread{'' if jobs == 1 else 's'}")
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
+        """Says something every quarter of the way."""
         step = int(fraction * LINES_PER_CASE)
         if self._said[index] < step < LINES_PER_CASE:
             self._said[index] = step
@@ -60,11 +62,13 @@ class Lines(Progress):
             self._say(f"{label}: {_distance(distance, length)}, {factor:.1f} times real time")
 
     def done(self, index: int, wall_s: float, trouble: str | None) -> None:
+        """Says how it ended."""
         self._say(f"{self._cases[index][0]}: {trouble or 'done'} ({wall_s:.1f} s)")
 
     @staticmethod
     def _say(text: str) -> None:
-        print(text, file=sys.stderr, flush=True)
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
 
 
 class Bars(Progress):
@@ -76,6 +80,7 @@ class Bars(Progress):
         self._lengths: list[float | None] = []
 
     def begin(self, cases: Sequence[tuple[str, float | None]], jobs: int) -> None:
+        """Draws a bar for each."""
         from rich.console import Console
         from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
         from rich.progress import Progress as RichBars
@@ -95,6 +100,7 @@ class Bars(Progress):
         self._bars.start()
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
+        """Moves a bar."""
         if self._bars is None:
             return
         task = self._tasks[index]
@@ -104,6 +110,7 @@ class Bars(Progress):
         self._bars.update(task, completed=fraction, state=state)
 
     def done(self, index: int, wall_s: float, trouble: str | None) -> None:
+        """Stops a bar."""
         if self._bars is None:
             return
         task = self._tasks[index]
@@ -116,6 +123,7 @@ class Bars(Progress):
         self._bars.stop_task(task)
 
     def end(self) -> None:
+        """Leaves the bars as they are."""
         if self._bars is not None:
             self._bars.stop()
             self._bars = None

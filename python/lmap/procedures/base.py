@@ -1,7 +1,8 @@
 """What a procedure is, and what most of them share.
 
-A procedure is a module with two pure functions: `cases` turns a spec into cases, `quantities` turns the frames of all
-cases into what the criteria judge. It never calls the simulator, opens no file and judges nothing.
+A procedure is a module with two pure functions: `cases` turns a spec into cases, `quantities` turns the
+frames of all cases into what the criteria judge. It never calls the simulator, opens no file and judges
+nothing.
 """
 
 from __future__ import annotations
@@ -55,8 +56,8 @@ class Procedure(Protocol):
 def expand(spec: Spec, vehicle: VehicleData, *, kind: str = "time") -> list[Case]:
     """A case for every wheel profile and speed that the spec lists, profiles outermost.
 
-    The label says what varies: the wheel profile where the spec names any, the speed where it lists several or where
-    nothing else would be said.
+    The label says what varies: the wheel profile where the spec names any, the speed where it lists several
+    or where nothing else would be said.
     """
     speeds = spec.run.speeds
     if speeds is None:

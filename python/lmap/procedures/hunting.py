@@ -1,7 +1,8 @@
 """Hunting (LMAP 2C.1): smooth straight track at 110 % of the design speed, tare, worn wheels.
 
-One case for every wheel profile and speed of the spec; the criteria judge the frames as they are. Beside the verdicts
-stand what the figures hang on: the track's extremes and longest wavelength, and the profiles' equivalent conicity.
+One case for every wheel profile and speed of the spec; the criteria judge the frames as they are. Beside the
+verdicts stand what the figures hang on: the track's extremes and longest wavelength, and the profiles'
+equivalent conicity.
 """
 
 from __future__ import annotations

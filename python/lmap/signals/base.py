@@ -1,7 +1,7 @@
 """What a link of a chain is: a frozen pydantic model with its parameters, named as in specs.
 
-A signal is a frame with three columns: `t` (s), `s` (m) and `x` (the values). A filter turns a signal into a signal,
-a statistic turns it into a reading.
+A signal is a frame with three columns: `t` (s), `s` (m) and `x` (the values). A filter turns a signal into a
+signal, a statistic turns it into a reading.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 """A finite number, zero or above."""
 
 STEP_TOLERANCE = 1e-6
-"""Relative unevenness of `t` that still counts as evenly sampled: rounding of t = k * step in double precision."""
+"""Relative unevenness of `t` that still counts as evenly sampled: rounding of t = k * step."""
 
 
 @dataclass(frozen=True, slots=True)

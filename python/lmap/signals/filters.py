@@ -15,11 +15,12 @@ from lmap.signals.base import Filter, NotNegative, Positive, sample_step
 class Lowpass(Filter):
     """Butterworth low-pass, -3 dB at `cutoff_hz`.
 
-    With `zero_phase` a filter of half the order runs forward and back, so that peaks stay where they are on the track.
-    The pair is -3 dB at `cutoff_hz` when each half's corner is raised by 1/(sqrt 2 - 1)^(1/order), which is 1.247 for
-    the 4-pole. The factor is applied to the pre-warped frequency tan(pi f / rate), so that it also holds where the
-    cut-off is a sizeable part of the sampling rate. `trim_s` is cut at both ends, where the filter sees no past or no
-    future. Refuses a signal sampled slower than `min_rate_hz` (FRA asks 200 samples/s of the acceleration filter).
+    With `zero_phase` a filter of half the order runs forward and back, so that peaks stay where they are on
+    the track. The pair is -3 dB at `cutoff_hz` when each half's corner is raised by 1/(sqrt 2 - 1)^(1/order),
+    which is 1.247 for the 4-pole. The factor is applied to the pre-warped frequency tan(pi f / rate), so that
+    it also holds where the cut-off is a sizeable part of the sampling rate. `trim_s` is cut at both ends,
+    where the filter sees no past or no future. Refuses a signal sampled slower than `min_rate_hz` (FRA asks
+    200 samples/s of the acceleration filter).
     """
 
     name: ClassVar[str] = "lowpass"
@@ -55,7 +56,7 @@ class Lowpass(Filter):
         poles = self.order // 2 if self.zero_phase else self.order
         sections = butter(poles, corner, btype="low", output="sos", fs=rate)
         trim = round(self.trim_s * rate)
-        # scipy's own default padding; a signal no longer than this, or than both ends, leaves nothing to judge
+        # scipy's own default padding; a signal no longer than this, or than both ends, leaves nothing
         pad = 3 * (2 * len(sections) + 1)
         if signal.height <= max(2 * trim, pad):
             raise JudgementProblem(
@@ -80,7 +81,7 @@ class RemoveMean(Filter):
 
 
 class Skip(Filter):
-    """The signal without its first `start_s` seconds or `start_m` metres: the run-in, where a spec declares one."""
+    """The signal without its first `start_s` seconds or `start_m` metres: a run-in that a spec declares."""
 
     name: ClassVar[str] = "skip"
     start_s: NotNegative = 0.0

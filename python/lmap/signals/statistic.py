@@ -16,10 +16,10 @@ from lmap.signals.windows import slide
 class AveragePeak(Statistic):
     """Largest mean height of the peaks within a sliding window.
 
-    The run's mean is removed, the largest |x| of each half-wave between two zero crossings is a peak, and the mean of
-    the peaks is taken over every window of `window_s` that lies within the record. The largest window counts. The
-    half-waves cut off by the record's ends have no peak of their own. Windows with fewer than `min_peaks` are left
-    out: the limit is meant for repeated motion, single transients excluded.
+    The run's mean is removed, the largest |x| of each half-wave between two zero crossings is a peak, and the
+    mean of the peaks is taken over every window of `window_s` that lies within the record. The largest window
+    counts. The half-waves cut off by the record's ends have no peak of their own. Windows with fewer than
+    `min_peaks` are left out: the limit is meant for repeated motion, single transients excluded.
     """
 
     name: ClassVar[str] = "average_peak"
@@ -41,11 +41,11 @@ class AveragePeak(Statistic):
         peaks = half_wave_peaks(signal)
         if peaks.is_empty():
             if signal.select((pl.col("x") == pl.col("x").first()).all()).item():
-                return Reading(0.0, (begin + end) / 2.0, float(signal.get_column("s").mean() or 0.0))  # type: ignore[arg-type]
+                return Reading(0.0, (begin + end) / 2.0, float(np.mean(signal.get_column("s"))))
             raise JudgementProblem("the record has no complete half-wave, so no peak")
         t, height = peaks.get_column("t").to_numpy(), peaks.get_column("x").to_numpy()
-        # The set of peaks in [a, a + w] changes only where a passes a peak or a peak less w: these and the points
-        # between them meet every set that a sliding window can hold.
+        # The set of peaks in [a, a + w] changes only where a passes a peak or a peak less w: these and the
+        # points between them meet every set that a sliding window can hold.
         last = max(end - self.window_s, begin)
         edges = np.unique(np.clip(np.concatenate((t, t - self.window_s, [begin, last])), begin, last))
         starts = np.sort(np.concatenate((edges, (edges[1:] + edges[:-1]) / 2.0)))
@@ -102,10 +102,10 @@ class _Windowed(Statistic):
 
 
 class Sustained(_Windowed):
-    """Largest level that is held without break over a window: the maximum of the sliding minimum (an erosion).
+    """Largest level that is held without break over a window: maximum of the sliding minimum (an erosion).
 
-    The window is the samples within it, so a level that is held for the window less almost one sample already counts:
-    the error is on the safe side. `absolute` judges |x|, which is what a limit on both signs means.
+    The window is the samples within it, so a level that is held for the window less almost one sample already
+    counts: the error is on the safe side. `absolute` judges |x|, which is what a limit on both signs means.
     """
 
     name: ClassVar[str] = "sustained"
@@ -124,7 +124,7 @@ class Sustained(_Windowed):
 
 
 class SlidingMean(_Windowed):
-    """Largest mean over a window (EN 14363 and UIC 518 read wheel L/V so); `absolute` takes the mean's size."""
+    """Largest mean over a window (EN 14363 and UIC 518 read L/V so); `absolute` takes the mean's size."""
 
     name: ClassVar[str] = "sliding_mean"
     absolute: bool = False
@@ -204,7 +204,7 @@ class Rms(Statistic):
 
 
 class Percentile(Statistic):
-    """The value that `percent` of the samples stay below, between samples by straight line; `absolute` of |x|."""
+    """The value that `percent` of the samples stay below, interpolated; `absolute` of |x|."""
 
     name: ClassVar[str] = "percentile"
     percent: float = Field(ge=0.0, le=100.0)

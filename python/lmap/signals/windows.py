@@ -1,7 +1,7 @@
 """Sliding windows over time or distance: what a statistic sees at once.
 
-A window is the samples within it, both ends counted. Windows that reach over an end of the record are left out: a
-record shorter than the window has none, which is an error.
+A window is the samples within it, both ends counted. Windows that reach over an end of the record are left
+out: a record shorter than the window has none, which is an error.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ t = k * step does not drop a sample at a window's end."""
 def slide(
     signal: pl.DataFrame, function: Literal["min", "max", "mean"], *, over: Literal["t", "s"], length: float
 ) -> pl.DataFrame:
-    """`t`, `s`, `x` of every full window: its middle (the column `over` exactly) and the function of its samples."""
+    """`t`, `s`, `x` of every full window: its middle, and the function of its samples."""
     column = signal.get_column(over)
     unit = "s" if over == "t" else "m"
     if not column.is_sorted():

@@ -89,7 +89,7 @@ def build(*, label: str, vehicle: VehicleData, track: Mapping[str, Any], run: Ma
 
 
 def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """A base's tables with the keys of `over` laid on top; a table of another `kind` replaces, lists replace."""
+    """A base's tables with the keys of `over` on top; a table of another `kind` replaces, a list too."""
     result = copy.deepcopy(dict(base))
     for key, value in over.items():
         below = result.get(key)

@@ -33,7 +33,7 @@ class LoadedSpec:
         return overrides.split(self.settings)[1]
 
     def locate(self, problem: Problem) -> Problem:
-        """A problem whose key starts at the spec, with file and line, or with `--set` where that is its origin."""
+        """A problem whose key starts at the spec, with file and line, or with `--set` as its origin."""
         return _locate(problem, self.document, self.settings, self.given)
 
 

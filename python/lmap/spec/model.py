@@ -1,5 +1,5 @@
-"""What a spec is, as written: the keys that a procedure expands, checked; all other keys of `[track]` and `[run]`
-go through as plain data and are checked by the core, which owns their kinds.
+"""What a spec is, as written: the keys that a procedure expands, checked; all other keys of `[track]` and
+`[run]` go through as plain data and are checked by the core, which owns their kinds.
 """
 
 from __future__ import annotations

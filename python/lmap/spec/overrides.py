@@ -1,8 +1,8 @@
 """One rule for `--set`, `[set]` and Python's `set=`.
 
-A dotted key whose first part is `track`, `run`, `vehicle` or `condition` is a key of the spec; any other is a named
-parameter of the vehicle. Applied before anything is expanded, `[set]` first, then what the caller gives.
-`run.speed_kmh` replaces `run.speed` and the other way round.
+A dotted key whose first part is `track`, `run`, `vehicle` or `condition` is a key of the spec; any other is a
+named parameter of the vehicle. Applied before anything is expanded, `[set]` first, then what the caller
+gives. `run.speed_kmh` replaces `run.speed` and the other way round.
 """
 
 from __future__ import annotations
@@ -17,7 +17,10 @@ from lmap.errors import InputProblem, Problem, nearest_hint
 SPEC_KEYS = ("condition", "run", "track", "vehicle")
 """First parts of a key that mean the spec."""
 
-_SAME = {("run", "speed"): ("run", "speed_kmh"), ("run", "speed_kmh"): ("run", "speed")}
+_SAME: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("run", "speed"): ("run", "speed_kmh"),
+    ("run", "speed_kmh"): ("run", "speed"),
+}
 
 
 def parse(settings: Iterable[str]) -> dict[str, Any]:
