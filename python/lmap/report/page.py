@@ -47,9 +47,7 @@ def render(acceptance: Acceptance) -> str:
     from markupsafe import Markup
 
     templates = resources.files("lmap.report") / "templates"
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
     return template.render(
         page=_page(acceptance),
@@ -91,8 +89,7 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "version": acceptance.version,
         "core": acceptance.core,
         "specs": [
-            _spec(position, spec, alone=len(acceptance.specs) == 1)
-            for position, spec in enumerate(acceptance.specs)
+            _spec(position, spec, alone=len(acceptance.specs) == 1) for position, spec in enumerate(acceptance.specs)
         ],
     }
 
@@ -146,7 +143,7 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
         verdict=verdict,
         verdict_class=_class(verdict),
         signal=criterion.signal or NOTHING,
-        place=_place(criterion.at),
+        place=_place(criterion.at) if words.placed(criterion) else "",
         source=criterion.source,
     )
 
