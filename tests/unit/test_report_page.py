@@ -60,7 +60,7 @@ class Page(HTMLParser):
 
 def page(acceptance: Acceptance) -> Page:
     """Rendered and parsed; every tag is closed."""
-    parsed = Page(render(acceptance))
+    parsed = Page(render(acceptance).decode())
     assert parsed.open == []
     return parsed
 
