@@ -1,6 +1,12 @@
 //! Mathematics without a rail word in it.
 
+pub mod elliptic;
+pub mod angle;
+pub mod fft;
+pub mod hermite;
+pub mod quadrature;
 pub mod rotation;
+pub mod small_lu;
 
 /// Column of three.
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -1,1 +1,27 @@
-//! schema (being written)
+//! What the user writes: vehicle, track and run, read from TOML or JSON, expanded, checked, typed.
+//!
+//! A document goes one way: named parameters are overridden (`set`, then the operating condition), templates are
+//! copied, references become numbers, the structure is held against the JSON schema of the types that serde
+//! fills, and relations between keys are checked. Faults are collected; each names the key as written.
+
+mod build;
+mod case;
+mod check;
+mod document;
+mod node;
+mod parameter;
+mod run;
+mod template;
+mod toml_source;
+mod track;
+mod vehicle;
+mod written;
+
+pub use case::{Case, FORMAT, ProfileData, ProfileKind};
+pub use document::{resolve_summary, vehicle_schema};
+pub use run::{Run, RunKind};
+pub use toml_source::{SyntaxError, line_of, syntax_error, toml_to_json};
+pub use track::{Support, Track};
+pub use vehicle::{
+    Body, Connection, ContactSettings, DynamicBrake, Outline, Sensor, SpeedHold, Traction, Vehicle, Wheelset,
+};

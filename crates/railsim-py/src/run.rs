@@ -1,0 +1,102 @@
+//! Cases: checking, running, and what a run records.
+
+use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+
+use pyo3::prelude::*;
+use railsim::KeyPath;
+use railsim::run::{self, Outcome};
+use railsim::schema::Case;
+use railsim::track::irregularity::DeviationField;
+
+use crate::arrow::Frame;
+use crate::enter::{Finished, Listener, Progress, enter};
+use crate::errors::raise;
+
+/// Version of the package.
+#[pyfunction]
+pub fn version() -> &'static str {
+    env!("CARGO_PKG_VERSION")
+}
+
+/// SHA-256 of the core's sources.
+#[pyfunction]
+pub fn fingerprint() -> &'static str {
+    env!("RAILSIM_FINGERPRINT")
+}
+
+/// Every fault of a case, at once.
+#[pyfunction]
+pub fn check_case(py: Python<'_>, case_json: &str) -> PyResult<()> {
+    read(py, case_json).map(drop)
+}
+
+/// Name, unit and meaning of every channel.
+#[pyfunction]
+pub fn channels(py: Python<'_>, case_json: &str) -> PyResult<Vec<(String, &'static str, &'static str)>> {
+    let case = read(py, case_json)?;
+    let channels = run::channels(&case).map_err(|e| raise(py, e))?;
+    Ok(channels.into_iter().map(|c| (c.name, c.unit, c.meaning)).collect())
+}
+
+/// Smallest and largest value of each track irregularity.
+#[pyfunction]
+pub fn track_extremes(py: Python<'_>, case_json: &str) -> PyResult<BTreeMap<&'static str, (f64, f64)>> {
+    let case = read(py, case_json)?;
+    let extremes = py.detach(|| {
+        let track = &case.track;
+        let at = KeyPath::of("track.irregularity");
+        DeviationField::new(&track.irregularity, track.length, track.fade_start, track.fade_in, &at)
+            .map(|field| field.extremes())
+    });
+    let extremes = extremes.map_err(|e| raise(py, e))?;
+    Ok(["lateral", "vertical", "cross_level", "gauge"].into_iter().zip(extremes).collect())
+}
+
+/// Runs cases on `jobs` threads; results and progress go to the callbacks.
+#[pyfunction]
+pub fn run_cases(
+    py: Python<'_>,
+    cases: Vec<String>,
+    jobs: NonZeroUsize,
+    on_progress: Py<PyAny>,
+    on_done: Py<PyAny>,
+) -> PyResult<()> {
+    enter(
+        py,
+        cases.len(),
+        jobs,
+        |index, control| run::simulate(&Case::from_json(&cases[index])?, control),
+        &mut Callbacks { on_progress, on_done },
+    )
+}
+
+fn read(py: Python<'_>, case_json: &str) -> PyResult<Case> {
+    Case::from_json(case_json).map_err(|e| raise(py, e))
+}
+
+/// Hands what happens to two Python functions.
+pub struct Callbacks {
+    /// `on_progress(index, fraction, distance_m, real_time_factor)`
+    pub on_progress: Py<PyAny>,
+    /// `on_done(index, frame or exception)`
+    pub on_done: Py<PyAny>,
+}
+
+impl Listener for Callbacks {
+    type Output = Outcome;
+
+    fn progress(&mut self, py: Python<'_>, index: usize, progress: Progress) -> PyResult<()> {
+        let Progress { fraction, distance, real_time_factor } = progress;
+        self.on_progress.call1(py, (index, fraction, distance, real_time_factor)).map(drop)
+    }
+
+    fn done(&mut self, py: Python<'_>, finished: Finished<Outcome>) -> PyResult<()> {
+        let Finished { index, result, wall_s } = finished;
+        match result.map_err(|e| e.into_py_err(py)).and_then(|outcome| Frame::new(outcome, wall_s)) {
+            Ok(frame) => self.on_done.call1(py, (index, frame)),
+            Err(error) => self.on_done.call1(py, (index, error.into_value(py))),
+        }
+        .map(drop)
+    }
+}

@@ -1,0 +1,126 @@
+//! Rolling radius difference and equivalent conicity of a wheelset with the same pair on both sides.
+//!
+//! EN 15302 (UIC 519): the wavelength of the undamped kinematic motion of the wheelset,
+//! expressed as the cone that would have it. With dr(y) = r_right - r_left and S(y) = int_0^y dr dy, the motion of amplitude A
+//! has (dy/dx)^2 = 2 (S(A) - S(y))/(e r0); by Klingel's formula tan(gamma_e) = (pi/lambda)^2 2 e r0, where e r0
+//! cancels: tan(gamma_e) = pi^2/(8 I^2), I = int_0^A dy/sqrt(2 (S(A) - S(y))). Both sides being mirror images, dr is odd and the motion
+//! symmetrical, +-A.
+
+use crate::contact::geometry_table::{GeometryTable, OutOfTable};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+impl GeometryTable {
+    /// Rolling radius of the right wheel less that of the left, m, for the wheelset's centre shifted to the right by `y` (m).
+    ///
+    /// The wheelset rolls about its centre until both wheels touch ([`GeometryTable::touching_roll`]); that
+    /// adds (R + r0) tan(gamma)/l0 to the conicity of a cone on a head of radius R, some 5 %. The radii are those of the quasi-elastic contact
+    /// positions, so dr is continuous where rigid contact would jump.
+    ///
+    /// # Errors
+    /// A shift outside the table.
+    pub fn rolling_radius_difference(&self, y: f64) -> Result<f64, OutOfTable> {
+        let roll = self.touching_roll(y)?;
+        let dy = self.tape_shift(y, roll);
+        Ok(self.touching(dy, roll)?.z_wheel - self.touching(-dy, -roll)?.z_wheel)
+    }
+
+    /// Shift of the right wheel's tape-circle point, which lies a radius below the axle.
+    fn tape_shift(&self, y: f64, roll: f64) -> f64 {
+        y - roll * self.placement().wheel_radius
+    }
+
+    /// Roll of the wheelset (rad, right side down positive) at which both wheels touch when its centre is shifted to the
+    /// right by `y` (m), by fixed-point iteration (contraction: contact angle times radius over l0, even 1.2 rad
+    /// converges with the halved step).
+    ///
+    /// # Errors
+    /// A shift outside the table.
+    pub fn touching_roll(&self, y: f64) -> Result<f64, OutOfTable> {
+        let least = |gap: [f64; 2]| gap[0].min(gap[1]);
+        let mut roll = 0.0;
+        for _ in 0..30 {
+            let dy = self.tape_shift(y, roll);
+            let (right, left) = (least(self.gap(dy, roll)?), least(self.gap(-dy, -roll)?));
+            let next = (right - left) / (2.0 * self.placement().tape_half_distance);
+            let step = 0.5 * (next - roll);
+            roll += step;
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        Ok(roll)
+    }
+
+    /// Equivalent conicity tan(gamma_e) at an amplitude (m, half the peak-to-peak lateral motion) by EN 15302's integration.
+    ///
+    /// `None` where there is no oscillation of this amplitude (dr does not restore, or the table ends).
+    #[must_use]
+    pub fn equivalent_conicity(&self, amplitude: f64) -> Option<f64> {
+        equivalent_conicity(|y| self.rolling_radius_difference(y).ok(), amplitude)
+    }
+}
+
+/// Equivalent conicity of any odd dr(y), as [`GeometryTable::equivalent_conicity`].
+///
+/// Midpoint sums over theta with y = A sin(theta), which removes the singularity at the turning point; 400 steps.
+#[must_use]
+pub fn equivalent_conicity(dr: impl Fn(f64) -> Option<f64>, amplitude: f64) -> Option<f64> {
+    const STEPS: usize = 400;
+    if amplitude.is_nan() || amplitude <= 0.0 {
+        return None;
+    }
+    // S at the ends of the steps, by Simpson
+    let y = |position: f64| amplitude * (FRAC_PI_2 * position / STEPS as f64).sin();
+    let mut s = vec![0.0; STEPS + 1];
+    let mut middles = vec![0.0; STEPS];
+    let mut before = dr(0.0)?;
+    for k in 0..STEPS {
+        let (y0, y1) = (y(k as f64), y(k as f64 + 1.0));
+        let (middle, after) = (dr(0.5 * (y0 + y1))?, dr(y1)?);
+        let h = y1 - y0;
+        s[k + 1] = s[k] + h * (before + 4.0 * middle + after) / 6.0;
+        // half a step by the parabola through the three
+        middles[k] = s[k] + h * (5.0 * before + 8.0 * middle - after) / 24.0;
+        before = after;
+    }
+    let mut integral = 0.0;
+    for (k, middle) in middles.iter().enumerate() {
+        let (y0, y1) = (y(k as f64), y(k as f64 + 1.0));
+        let left = s[STEPS] - middle;
+        if left <= 0.0 {
+            return None;
+        }
+        // dy = sqrt(A^2 - y^2) dtheta at the same y as S
+        let at = 0.5 * (y0 + y1);
+        let dy = (amplitude * amplitude - at * at).sqrt() * FRAC_PI_2 / STEPS as f64;
+        integral += dy / (2.0 * left).sqrt();
+    }
+    Some(PI * PI / (8.0 * integral * integral))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cone_is_its_own_equivalent() {
+        let conicity = equivalent_conicity(|y| Some(2.0 * 0.05 * y), 3e-3).unwrap();
+        println!("cone 0.05: {conicity:.6}");
+        assert!((conicity / 0.05 - 1.0).abs() < 1e-4);
+    }
+
+    /// dr = c y^3: tan(gamma_e) = pi^2 c A^2/(8 (int_0^1 dt/sqrt((1 - t^4)/2))^2), the lemniscate integral 1.31102878.
+    #[test]
+    fn cubic_difference_closed_form() {
+        let (c, a) = (1000.0_f64, 3e-3_f64);
+        let exact = PI * PI * c * a * a / (16.0 * 1.311_028_777_146_06_f64.powi(2));
+        let ours = equivalent_conicity(|y| Some(c * y * y * y), a).unwrap();
+        println!("cubic: {ours:.6e} exact {exact:.6e}");
+        assert!((ours / exact - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_difference_that_does_not_restore_has_no_conicity() {
+        assert_eq!(equivalent_conicity(|y| Some(-0.1 * y), 3e-3), None);
+    }
+}

@@ -1,0 +1,112 @@
+//! Polach's formula.
+
+use super::{CreepForce, Creepage, Patch};
+use crate::error::{Fault, KeyPath};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Polach's closed formula with reduction factors for adhesion (`k_a`) and slip (`k_s`).
+///
+/// Without spin (O. Polach, Wear 258 (2005) 992, eqs. 2-4; sx = xi, sy = eta, s = sqrt(sx^2 + sy^2), Q the normal force):
+///
+/// - eps = G pi a b c_jj s/(4 Q mu), c_jj = sqrt((C11 sx/s)^2 + (C22 sy/s)^2),
+/// - F = (2 Q mu/pi) (k_a eps/(1 + (k_a eps)^2) + atan(k_s eps)).
+///
+/// With spin (O. Polach, Vehicle System Dynamics Suppl. 33 (1999) 728; omega = phi in 1/m):
+///
+/// - s_yC = sy + omega a if that is greater in magnitude than sy, else sy; s_C = sqrt(sx^2 + s_yC^2) stands for s in eps,
+/// - K = 1 + 6.3 (1 - exp(-a/b)), eps_M = (8/3) b sqrt(a b) G C23 |s_yC|/(K Q mu), d = (eps_M^2 - 1)/(eps_M^2 + 1),
+/// - F_yS = (9/16) a Q mu K (eps_M (-d^3/3 + d^2/2 - 1/6) + (1 - d^2)^1.5/3),
+/// - Fx = -F sx/s_C, Fy = -(F sy + F_yS omega)/s_C.
+///
+/// `k_a` = `k_s` = 1 is the formula of 1999. The slope at zero is (k_a + k_s)/2 of Kalker's; the spin term alone does not reach Kalker's C23
+/// (the method's own error). Its error against the exact theory is up to some 0.04 mu Q without spin. The vector is cut
+/// at mu Q, which the spin term can otherwise exceed. The coefficient of friction at the slip velocity
+/// mu0 ((1 - A) exp(-B w) + A) is the caller's: `mu` is what holds at this contact now.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Polach {
+    /// Reduction factor in the area of adhesion, 0 < k_s <= k_a <= 1. Default 1: clean and dry, the formula of 1999.
+    #[serde(default = "one")]
+    pub k_a: f64,
+    /// Reduction factor in the area of slip. Default 1.
+    #[serde(default = "one")]
+    pub k_s: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Default for Polach {
+    fn default() -> Self {
+        Self { k_a: one(), k_s: one() }
+    }
+}
+
+impl Polach {
+    /// Force on the wheel.
+    #[must_use]
+    pub fn force(&self, p: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
+        let (sx, sy, omega) = (creepage.xi, creepage.eta, creepage.phi);
+        let limit = mu * p.n;
+        if limit <= 0.0 {
+            return CreepForce::default();
+        }
+        let with_spin = sy + omega * p.a;
+        let syc = if with_spin.abs() > sy.abs() { with_spin } else { sy };
+        let sc = sx.hypot(syc);
+        if sc == 0.0 {
+            return CreepForce::default();
+        }
+        let s = sx.hypot(sy);
+        let c_jj = if s > 0.0 { (p.c11 * sx).hypot(p.c22 * sy) / s } else { p.c22 };
+        let eps = 0.25 * p.shear_modulus * PI * p.a * p.b * c_jj * sc / limit;
+        let adhesion = self.k_a * eps;
+        let force = 2.0 * limit / PI * (adhesion / (1.0 + adhesion * adhesion) + (self.k_s * eps).atan());
+
+        let k = 1.0 + 6.3 * (1.0 - (-p.a / p.b).exp());
+        let eps_m = 8.0 / 3.0 * p.b * (p.a * p.b).sqrt() * p.shear_modulus * p.c23 * syc.abs() / (k * limit);
+        let d = (eps_m * eps_m - 1.0) / (eps_m * eps_m + 1.0);
+        let spin = 9.0 / 16.0
+            * p.a
+            * limit
+            * k
+            * (eps_m * (-d * d * d / 3.0 + 0.5 * d * d - 1.0 / 6.0) + (1.0 - d * d).max(0.0).powf(1.5) / 3.0);
+        let (fx, fy) = (-force * sx / sc, -(force * sy + spin * omega) / sc);
+        let cut = (limit / fx.hypot(fy)).min(1.0);
+        CreepForce { fx: cut * fx, fy: cut * fy }
+    }
+
+    /// Slope at zero creepage as a fraction of Kalker's.
+    #[must_use]
+    pub fn reduction(&self) -> f64 {
+        0.5 * (self.k_a + self.k_s)
+    }
+
+    /// Faults in the parameters.
+    #[must_use]
+    pub fn faults(&self, at: &KeyPath) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (key, value) in [("k_a", self.k_a), ("k_s", self.k_s)] {
+            if !(value > 0.0 && value <= 1.0) {
+                faults.push(Fault::new(at.key(key), value.to_string(), "greater than 0, at most 1"));
+            }
+        }
+        if faults.is_empty() && self.k_s > self.k_a {
+            faults.push(Fault::new(
+                at.key("k_s"),
+                self.k_s.to_string(),
+                format!("at most k_a = {}", self.k_a),
+            ));
+        }
+        faults
+    }
+
+    /// Laws for the contract suite: the formula of 1999 and a wet rail.
+    #[must_use]
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { k_a: 0.29, k_s: 0.09 }]
+    }
+}

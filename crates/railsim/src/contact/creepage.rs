@@ -1,0 +1,175 @@
+//! Kinematics of one wheel on its rail: where the contacts are, how fast the surfaces slide, and what the contact
+//! forces do to the wheelset and to the track under it.
+//!
+//! Everything is written in side coordinates (x forward, y~ outward, z down), so that left and right run the same
+//! code: `sigma` is +1 on the right, -1 on the left, lateral components and turns about x and z change sign with it.
+//!
+//! Creepages are the sliding velocity of the wheel's surface against the rail's, over the rolling speed `V`:
+//! `xi = v_x / V`, `eta = v_t / V` with t the outward tangent in the contact plane, and spin
+//! `phi = Omega . (e_x x e_t) / V`; the slip field in the patch is `(xi - phi y, eta + phi x) V`
+//! (Kalker 1990, eq. 1.85, written for our axes).
+
+use crate::body::Kinematics;
+use crate::contact::creep::Creepage;
+use crate::contact::geometry_table::ContactPoint;
+use crate::math::Vec3;
+use crate::track::irregularity::Deviation;
+
+/// Lateral distance over which cross level is defined, m: the usual distance of contact points on standard gauge.
+pub const CROSS_LEVEL_BASE: f64 = 1.5;
+
+/// Position and velocity of the track mass under a wheelset, relative to the design track.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TrackMotion {
+    /// Lateral, m, + right.
+    pub y: f64,
+    /// Vertical, m, + down.
+    pub z: f64,
+    /// Roll, rad.
+    pub phi: f64,
+    /// dy/dt, m/s.
+    pub vy: f64,
+    /// dz/dt, m/s.
+    pub vz: f64,
+    /// dphi/dt, rad/s.
+    pub vphi: f64,
+}
+
+/// A rail as the wheel of side `sigma` meets it.
+#[derive(Debug, Clone, Copy)]
+pub struct RailPose {
+    /// Origin of the rail profile in side coordinates of the track frame: y~, z, m.
+    pub origin: [f64; 2],
+    /// Roll of the rail in side coordinates, rad.
+    pub roll: f64,
+    /// Velocity of the running surface at the origin as seen from the moving frame, y~ and z, m/s: that of the
+    /// track mass plus the deviation passing below.
+    pub surface_velocity: [f64; 2],
+}
+
+/// Rail of one side: design position, irregularity and track mass.
+#[inline]
+#[must_use]
+pub fn rail_pose(sigma: f64, rail_y: f64, dev: &Deviation, track: &TrackMotion, s_dot: f64) -> RailPose {
+    let tilt = dev.cross_level / CROSS_LEVEL_BASE;
+    let roll = tilt + track.phi;
+    let roll_rate = dev.dcross_level_ds * s_dot / CROSS_LEVEL_BASE + track.vphi;
+    let y = rail_y + 0.5 * dev.gauge;
+    RailPose {
+        origin: [y + sigma * (dev.y + track.y), dev.z + track.z + sigma * y * roll],
+        roll: sigma * roll,
+        surface_velocity: [
+            0.5 * dev.dgauge_ds * s_dot + sigma * (dev.dy_ds * s_dot + track.vy),
+            dev.dz_ds * s_dot + track.vz + sigma * y * roll_rate,
+        ],
+    }
+}
+
+/// A wheel relative to its rail, in rail axes: what the geometry table is asked.
+#[derive(Debug, Clone, Copy)]
+pub struct WheelPose {
+    /// Outward shift of the tape-circle point from its nominal place over the rail, m.
+    pub shift: f64,
+    /// Depth of the tape-circle point below the top of the rail, m.
+    pub depth: f64,
+    /// Roll of the wheel against the rail, side coordinates, rad.
+    pub roll: f64,
+    /// Yaw of the wheelset, side coordinates, rad.
+    pub yaw: f64,
+}
+
+/// Relative position of wheel and rail. `q` are the wheelset's coordinates, `nominal_shift` the tape circle's
+/// distance from the rail origin at nominal gauge.
+#[inline]
+#[must_use]
+pub fn wheel_pose(
+    sigma: f64,
+    q: &[f64],
+    k: &Kinematics,
+    tape_half_distance: f64,
+    radius: f64,
+    nominal_shift: f64,
+    rail: &RailPose,
+) -> WheelPose {
+    let tape = k.R_TB * Vec3::new(0.0, sigma * tape_half_distance, radius);
+    let y = sigma * (q[1] + tape.y) - rail.origin[0];
+    let z = q[2] + tape.z - rail.origin[1];
+    let (sin, cos) = rail.roll.sin_cos();
+    WheelPose {
+        shift: y * cos + z * sin - nominal_shift,
+        depth: z * cos - y * sin,
+        roll: sigma * q[3] - rail.roll,
+        yaw: sigma * q[5],
+    }
+}
+
+/// One contact, placed in the track frame.
+#[derive(Debug, Clone, Copy)]
+pub struct PlacedContact {
+    /// Contact point from the wheelset's centre of mass, track axes, m.
+    pub lever: Vec3,
+    /// Contact point in the cross-section of the track frame: y, z, m.
+    pub point: [f64; 2],
+    /// Outward tangent in the contact plane, track axes.
+    pub e_t: Vec3,
+    /// Normal, from the rail into the wheel, track axes.
+    pub e_n: Vec3,
+    /// Normal penetration, m.
+    pub penetration: f64,
+    /// Rate of approach along the normal, m/s.
+    pub approach_rate: f64,
+    /// Sliding velocity of the wheel against the rail, forward and along `e_t`, m/s.
+    pub slip: [f64; 2],
+    /// Creepages.
+    pub creepage: Creepage,
+}
+
+/// Places a contact of the geometry table in the track frame and computes its creepages at rolling speed `speed`.
+#[inline]
+#[must_use]
+#[allow(clippy::too_many_arguments)] // one stage of the right-hand side, all of it plain data
+pub fn place(
+    sigma: f64,
+    contact: &ContactPoint,
+    rail: &RailPose,
+    yaw: f64,
+    radius: f64,
+    q: &[f64],
+    k: &Kinematics,
+    track: &TrackMotion,
+    speed: f64,
+) -> PlacedContact {
+    let (sin_r, cos_r) = rail.roll.sin_cos();
+    // The contact plane's tilt in the track frame; the angle is positive where the flange is.
+    let (sin_g, cos_g) = (contact.angle - rail.roll).sin_cos();
+    let e_t = Vec3::new(0.0, sigma * cos_g, -sin_g);
+    let e_n = Vec3::new(0.0, -sigma * sin_g, -cos_g);
+    let side_y = rail.origin[0] + contact.y_rail * cos_r - contact.z_rail * sin_r;
+    let z = rail.origin[1] + contact.y_rail * sin_r + contact.z_rail * cos_r;
+    let y = sigma * side_y;
+    // On an inclined surface a yawed wheel touches ahead of the axle (flange side outwards-yawed): the normal of
+    // its surface of revolution has no forward component where sin(eps) = tan(yaw) tan(gamma).
+    let lead = (radius + contact.z_wheel) * yaw * sin_g / cos_g;
+    // The wheel itself stands behind or ahead of the axle's centre, turned there by yaw with the axle.
+    let across = y - q[1];
+    let lever = Vec3::new(lead - across * q[5].tan(), across, z - q[2]);
+
+    let w_T = k.R_TB * k.w_B;
+    let v_wheel = k.v_T + w_T.cross(&lever);
+    let v_rail = Vec3::new(0.0, track.vy - track.vphi * z, track.vz + track.vphi * y);
+    let slip = v_wheel - v_rail;
+    let slip_t = slip.dot(&e_t);
+    let surface = Vec3::new(0.0, sigma * rail.surface_velocity[0], rail.surface_velocity[1]);
+    let spin_axis = Vec3::new(0.0, sin_g, sigma * cos_g); // e_x x e_t
+    let spin = (w_T - Vec3::new(track.vphi, 0.0, 0.0)).dot(&spin_axis);
+    PlacedContact {
+        lever,
+        point: [y, z],
+        e_t,
+        e_n,
+        penetration: contact.penetration * contact.angle.cos(),
+        approach_rate: -(v_wheel - surface).dot(&e_n),
+        slip: [slip.x, slip_t],
+        creepage: Creepage { xi: slip.x / speed, eta: slip_t / speed, phi: spin / speed },
+    }
+}

@@ -1,0 +1,301 @@
+//! Building a [`GeometryTable`]: two searches per node, coarse over the whole wheel, fine where it may touch.
+
+use super::{
+    BLEND_FROM, BLEND_TO, Gaps, GeometryTable, LEAST_CURVATURE, NO_RAIL, PENETRATION, Placement, ROLL_RANGE,
+    ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values,
+};
+use crate::contact::profile::{Profile, ProfileKind, SPACING};
+use crate::contact::{hertz, kalker_table};
+use crate::error::{Error, Fault, KeyPath, Result};
+
+/// Stations per coarse cell (0.4 mm of arc).
+const STRIDE: usize = 8;
+/// How much deeper than at the ends of a coarse cell the surfaces may come within it, m along the normal: curvature
+/// 2 per mm over 0.4 mm, more than smoothed profiles have.
+const SLACK: f64 = 0.05e-3;
+/// Steepest contact angle for which vertical and normal distances are still told apart, rad.
+const STEEPEST_CONTACT: f64 = 1.4;
+
+/// A wheel station turned by the roll of the wheel.
+#[derive(Clone, Copy)]
+struct Turned {
+    y: f64,
+    z: f64,
+    /// Direction of the tangent in rail axes; the contact angle is its negative.
+    direction: f64,
+    cos: f64,
+}
+
+/// What does not change with the roll.
+struct WheelStation {
+    y: f64,
+    z: f64,
+    curvature: f64,
+    /// chi of tread and flange.
+    chi: [f64; 2],
+}
+
+fn smoothstep(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+impl GeometryTable {
+    /// Table of `wheel` on `rail` (upright as drawn; inclined and placed here).
+    ///
+    /// # Errors
+    /// - profiles of the wrong kind,
+    /// - a rail that does not reach down to the gauge point on its gauge side,
+    /// - gauge, radius, distances or elastic constants that are not positive, Poisson's ratio outside 0..0.5, an
+    ///   inclination steeper than 1:5.
+    pub fn build(wheel: &Profile, rail: &Profile, placement: &Placement) -> Result<Self> {
+        check(wheel, rail, placement)?;
+        let at = KeyPath::of("track.rail_profile");
+        let mut rail = rail.inclined(placement.rail_inclination, &at)?;
+        rail.top_to_zero();
+        let gauge_point = gauge_point(&rail, placement.gauge_point_depth).ok_or_else(|| {
+            Error::input(
+                Fault::new(
+                    KeyPath::of("track.gauge_point_depth"),
+                    format!("{:.1} mm", 1e3 * placement.gauge_point_depth),
+                    "a depth that the gauge side of the rail profile reaches",
+                )
+                .hint("the gauge side has negative y"),
+            )
+        })?;
+        let rail_origin_y = 0.5 * placement.gauge - gauge_point;
+        let mut table = Self {
+            placement: *placement,
+            rail_origin_y,
+            rail,
+            gaps: Vec::with_capacity(SHIFTS * ROLLS),
+            values: [Vec::with_capacity(SHIFTS * ROLLS), Vec::with_capacity(SHIFTS * ROLLS)],
+        };
+        table.fill(wheel);
+        Ok(table)
+    }
+
+    fn fill(&mut self, wheel: &Profile) {
+        let stations = wheel_stations(wheel);
+        let nominal = self.placement.tape_half_distance - self.rail_origin_y;
+        let mut turned = Vec::with_capacity(stations.len());
+        let mut scratch = Scratch::default();
+        for j in 0..ROLLS {
+            let roll = -ROLL_RANGE + ROLL_STEP * j as f64;
+            let (sin, cos) = roll.sin_cos();
+            turned.clear();
+            turned.extend(stations.iter().zip(wheel.stations()).map(|(s, raw)| {
+                let direction = raw.direction + roll;
+                Turned {
+                    y: s.y * cos - s.z * sin,
+                    z: s.y * sin + s.z * cos,
+                    direction,
+                    cos: direction.abs().min(STEEPEST_CONTACT).cos(),
+                }
+            }));
+            for i in 0..SHIFTS {
+                let offset = nominal - SHIFT_RANGE + SHIFT_STEP * i as f64;
+                let (gaps, [tread, flange]) =
+                    node(&self.rail, &stations, &turned, offset, &self.placement, &mut scratch);
+                self.gaps.push(gaps);
+                self.values[0].push(tread);
+                self.values[1].push(flange);
+            }
+        }
+    }
+}
+
+/// Gauge point: y at `depth` on the gauge side of the points themselves (the side may be too steep for the smoothed curve).
+fn gauge_point(rail: &Profile, depth: f64) -> Option<f64> {
+    let top = rail.points.iter().enumerate().min_by(|p, q| p.1[1].total_cmp(&q.1[1]))?.0;
+    (1..=top).rev().find_map(|i| {
+        let (p, q) = (rail.points[i], rail.points[i - 1]);
+        (p[1] <= depth && q[1] > depth).then(|| p[0] + (q[0] - p[0]) * (depth - p[1]) / (q[1] - p[1]))
+    })
+}
+
+fn wheel_stations(wheel: &Profile) -> Vec<WheelStation> {
+    let mut out: Vec<WheelStation> = wheel
+        .stations()
+        .iter()
+        .map(|s| WheelStation {
+            y: s.y,
+            z: s.z,
+            curvature: s.curvature,
+            chi: [1.0, smoothstep((-s.direction - BLEND_FROM) / (BLEND_TO - BLEND_FROM))],
+        })
+        .collect();
+    // from the running circle to the flange: once flange, always flange; field side: always tread
+    let mut flange = 0.0_f64;
+    for station in out.iter_mut().rev() {
+        flange = if station.y > 0.0 { 0.0 } else { flange.max(station.chi[1]) };
+        station.chi = [1.0 - flange, flange];
+    }
+    out
+}
+
+#[derive(Default)]
+struct Scratch {
+    coarse: Vec<f64>,
+    fine: Vec<(usize, f64)>,
+}
+
+fn node(
+    rail: &Profile,
+    stations: &[WheelStation],
+    turned: &[Turned],
+    offset: f64,
+    placement: &Placement,
+    scratch: &mut Scratch,
+) -> (Gaps, [Values; 2]) {
+    let gap = |t: &Turned| rail.z(t.y + offset).map_or(f64::INFINITY, |z| z - t.z);
+    scratch.coarse.clear();
+    scratch.coarse.extend(turned.iter().step_by(STRIDE).map(&gap));
+    let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
+    let mut values = [[0.0; 12]; 2];
+    for (zone, out) in values.iter_mut().enumerate() {
+        let supported = |k: usize| stations[k].chi[zone] > 0.0;
+        let coarse_least = scratch
+            .coarse
+            .iter()
+            .enumerate()
+            .filter(|(c, _)| supported(c * STRIDE))
+            .map(|(_, g)| *g)
+            .fold(f64::INFINITY, f64::min);
+        if !coarse_least.is_finite() {
+            continue;
+        }
+        scratch.fine.clear();
+        for c in 0..scratch.coarse.len() {
+            let first = c * STRIDE;
+            let end = (first + STRIDE).min(turned.len());
+            let next = scratch.coarse.get(c + 1).copied().unwrap_or(f64::INFINITY);
+            let near = (PENETRATION + SLACK) / turned[first].cos.min(turned[end - 1].cos);
+            if scratch.coarse[c].min(next) - coarse_least > near || !(supported(first) || supported(end - 1))
+            {
+                continue;
+            }
+            for k in (first..end).filter(|&k| supported(k)) {
+                let g = gap(&turned[k]);
+                if g.is_finite() {
+                    scratch.fine.push((k, g));
+                }
+            }
+        }
+        let least = scratch.fine.iter().map(|f| f.1).fold(f64::INFINITY, f64::min);
+        if !least.is_finite() {
+            continue;
+        }
+        let average = average(rail, stations, turned, offset, zone, least, &scratch.fine);
+        gaps.gap[zone] = least;
+        gaps.yaw[zone] = 0.5
+            * (placement.wheel_radius + average.z_wheel)
+            * average.angle.abs().min(STEEPEST_CONTACT).tan().powi(2);
+        *out = average.values(placement);
+    }
+    (gaps, values)
+}
+
+/// Quasi-elastic averages of one zone.
+#[derive(Default)]
+struct Average {
+    share: f64,
+    y_rail: f64,
+    z_rail: f64,
+    y_wheel: f64,
+    z_wheel: f64,
+    angle: f64,
+    curvature: f64,
+}
+
+fn average(
+    rail: &Profile,
+    stations: &[WheelStation],
+    turned: &[Turned],
+    offset: f64,
+    zone: usize,
+    least: f64,
+    fine: &[(usize, f64)],
+) -> Average {
+    let mut sum = Average::default();
+    let mut total = 0.0;
+    for &(k, g) in fine {
+        let (station, t) = (&stations[k], &turned[k]);
+        let w = 1.0 - (g - least) * t.cos / PENETRATION;
+        if w <= 0.0 {
+            continue;
+        }
+        let y = t.y + offset;
+        let Some(local) = rail.local(y) else { continue };
+        total += w;
+        sum.share += w * station.chi[zone];
+        sum.y_rail += w * y;
+        sum.z_rail += w * (g + t.z);
+        sum.y_wheel += w * station.y;
+        sum.z_wheel += w * station.z;
+        sum.angle -= w * 0.5 * (t.direction + local.direction);
+        sum.curvature += w * (local.curvature - station.curvature);
+    }
+    let scale = 1.0 / total;
+    let width = total * SPACING;
+    let conforming = 0.5 * 32.0 * PENETRATION / (9.0 * width * width);
+    Average {
+        share: sum.share * scale,
+        y_rail: sum.y_rail * scale,
+        z_rail: sum.z_rail * scale,
+        y_wheel: sum.y_wheel * scale,
+        z_wheel: sum.z_wheel * scale,
+        angle: sum.angle * scale,
+        curvature: (sum.curvature * scale).max(conforming).max(LEAST_CURVATURE),
+    }
+}
+
+impl Average {
+    fn values(&self, placement: &Placement) -> Values {
+        let along = self.angle.cos() / (placement.wheel_radius + self.z_wheel);
+        let modulus = hertz::effective_modulus(placement.youngs_modulus, placement.poisson);
+        let patch = hertz::solve(along, self.curvature, modulus);
+        let kalker = kalker_table::coefficients(patch.a1 / patch.b1, placement.poisson);
+        [
+            self.share,
+            self.y_rail,
+            self.z_rail,
+            self.y_wheel,
+            self.z_wheel,
+            self.angle,
+            patch.stiffness,
+            patch.a1,
+            patch.b1,
+            kalker.c11,
+            kalker.c22,
+            kalker.c23,
+        ]
+    }
+}
+
+fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
+    let mut faults = Vec::new();
+    if wheel.kind != ProfileKind::Wheel {
+        faults.push(Fault::new(KeyPath::of("run.wheel_profile"), "a rail profile", "a wheel profile"));
+    }
+    if rail.kind != ProfileKind::Rail {
+        faults.push(Fault::new(KeyPath::of("track.rail_profile"), "a wheel profile", "a rail profile"));
+    }
+    let mut range = |key: &str, value: f64, low: f64, high: f64, unit: &str| {
+        if !(low..=high).contains(&value) {
+            faults.push(Fault::new(
+                KeyPath::of(key),
+                format!("{value} {unit}"),
+                format!("{low} to {high} {unit}"),
+            ));
+        }
+    };
+    range("track.gauge", p.gauge, 0.2, 3.0, "m");
+    range("track.gauge_point_depth", p.gauge_point_depth, 1e-3, 0.05, "m");
+    range("track.rail_inclination", p.rail_inclination, -0.2, 0.2, "");
+    range("vehicle.wheelset.tape_half_distance", p.tape_half_distance, 0.1, 1.5, "m");
+    range("vehicle.wheelset.radius", p.wheel_radius, 0.05, 2.0, "m");
+    range("vehicle.contact.youngs_modulus", p.youngs_modulus, 1e8, 1e13, "Pa");
+    range("vehicle.contact.poisson", p.poisson, 0.0, 0.5, "");
+    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
+}

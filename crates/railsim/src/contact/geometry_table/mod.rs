@@ -1,0 +1,301 @@
+//! Contact geometry of one wheel on one rail, reduced to a table before the run.
+//!
+//! **Gap.** For a lateral shift dy and a roll of the wheel against the rail (in rail axes, about the wheel's tape-circle
+//! point) the vertical gap at every lateral position y is g(y) = z_rail(y) - z_wheel(y), with the tape-circle point at
+//! z = 0. Lowered by dz the wheel touches where dz > g.
+//!
+//! **Zones.** Up to two simultaneous contacts, one per zone of the *wheel*: tread and flange. A smooth weight chi over the wheel's
+//! own contact angle divides them, 1 on the tread below [`BLEND_FROM`], 0 on the flange above [`BLEND_TO`] and from there on
+//! to the flange tip. The bounds lie about where the crown of a rail (R 300, R 80) ends and its gauge corner (R 13)
+//! begins: 0.22 rad on as60, 0.24 rad on UIC 60, plus or minus the inclination. Tread contacts stay below 0.15 rad (0.144 at most on S1002, 0.09 on
+//! the worn anzr1), flange and root contacts lie above 0.35 rad, and rigid contact jumps from the one to the other. Where a pair leads one contact
+//! through the blend, both zones see it and share it, `share` adding up to about 1; two separate contacts have share 1 each.
+//!
+//! **Quasi-elastic averages.** Rigid contact points jump from one place of nearly conforming profiles to another; the pressed patch
+//! does not. Each zone's position, angle and curvature are averages over the zone with the weight
+//! w = max(0, 1 - n/delta), n the normal distance beyond the zone's smallest gap and delta = [`PENETRATION`], an elastic
+//! approach as under a wheel load. Every stored value is thus a continuous function of dy and roll, and bilinear
+//! interpolation keeps it so.
+//!
+//! **Curvatures.** Longitudinal 1/r cos(gamma) with r the local rolling radius (rail straight). Lateral relative curvature: the weighted
+//! mean of k_rail - k_wheel; where conforming profiles make that tiny or negative it is bounded from below by half of
+//! the curvature whose patch at penetration delta is as wide as the real one (32 delta/(9 W^2), W = int w ds), and by [`LEAST_CURVATURE`]. So
+//! Hertz always has an ellipse, no wider than about 1.4 times the conforming stretch; pressure in a truly conformal contact is not
+//! what this table is for.
+//!
+//! **Yaw** is a first-order correction in [`GeometryTable::contacts`]: at contact angle gamma the contact leads by r tan(gamma) tan(yaw)
+//! and the gap closes by r tan(gamma)^2 yaw^2/2. Yaw does not move the lateral position of the contact.
+
+mod build;
+
+use crate::contact::profile::Profile;
+
+/// Contact angle of the wheel up to which it is all tread, rad.
+pub const BLEND_FROM: f64 = 0.15;
+/// Contact angle from which on it is all flange, rad.
+pub const BLEND_TO: f64 = 0.35;
+/// Normal penetration of the quasi-elastic average, m.
+pub const PENETRATION: f64 = 0.03e-3;
+/// Bound of the relative lateral curvature, 1/m (a radius of 2 m).
+pub const LEAST_CURVATURE: f64 = 0.5;
+
+/// Greatest shift either way, m.
+pub const SHIFT_RANGE: f64 = 0.020;
+/// Step of the shift, m.
+pub const SHIFT_STEP: f64 = 0.1e-3;
+/// Greatest roll either way, rad.
+pub const ROLL_RANGE: f64 = 0.020;
+/// Step of the roll, rad: the bilinear error of the gap is R step^2/8, 0.15 um for R 300 mm.
+pub const ROLL_STEP: f64 = 2e-3;
+
+const SHIFTS: usize = 401;
+const ROLLS: usize = 21;
+
+/// How wheel and rail are placed against each other, and what they are made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// Track gauge, m.
+    pub gauge: f64,
+    /// Depth below the top of the inclined rail where the gauge is measured, m.
+    pub gauge_point_depth: f64,
+    /// Inclination of the rail to the track centre, as a slope (0.05 for 1:20).
+    pub rail_inclination: f64,
+    /// Half the distance between the running circles of a wheelset, m.
+    pub tape_half_distance: f64,
+    /// Radius of the running circle, m.
+    pub wheel_radius: f64,
+    /// Young's modulus of wheel and rail, Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio of wheel and rail.
+    pub poisson: f64,
+}
+
+/// Part of the wheel profile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Zone {
+    /// Contact angles below the blend.
+    #[default]
+    Tread,
+    /// Contact angles above it, to the flange tip.
+    Flange,
+}
+
+/// One contact between wheel and rail.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactPoint {
+    /// Tread or flange.
+    pub zone: Zone,
+    /// Vertical penetration, dz less the gap (m, > 0). The normal one is this times cos(angle).
+    pub penetration: f64,
+    /// Part of this contact that belongs to its zone, 0 to 1: multiplies the normal force.
+    pub share: f64,
+    /// On the rail, from the rail's origin, rail axes, m outward.
+    pub y_rail: f64,
+    /// On the rail, m below the top of rail.
+    pub z_rail: f64,
+    /// On the wheel, from the tape-circle point, wheel axes, m outward.
+    pub y_wheel: f64,
+    /// On the wheel, m below the tape-circle point: the rolling radius is `wheel_radius + z_wheel`.
+    pub z_wheel: f64,
+    /// Contact angle gamma against the rail axes, rad, positive on the flange side.
+    pub angle: f64,
+    /// C in N = C delta^1.5, delta the normal penetration, N/m^1.5.
+    pub hertz: f64,
+    /// Semi-axis along rolling per cube root of the normal force, m/N^(1/3).
+    pub a1: f64,
+    /// Semi-axis across, the same way.
+    pub b1: f64,
+    /// Kalker's C11.
+    pub c11: f64,
+    /// Kalker's C22.
+    pub c22: f64,
+    /// Kalker's C23.
+    pub c23: f64,
+}
+
+/// The wheel has left the table: shift or roll beyond its range, or not a number.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("wheel outside the contact table: shift {:.2} mm (+-20), roll {:.2} mrad (+-20)", 1e3 * dy, 1e3 * roll)]
+pub struct OutOfTable {
+    /// Shift asked for, m.
+    pub dy: f64,
+    /// Roll asked for, rad.
+    pub roll: f64,
+}
+
+/// Gaps of a node, apart from the rest so that a wheel in the air or off the flange costs four numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gaps {
+    /// Vertical gap per zone, m.
+    gap: [f64; 2],
+    /// r tan(gamma)^2/2 per zone, m/rad^2.
+    yaw: [f64; 2],
+}
+
+/// The rest of a node for one zone, in the order of [`ContactPoint`] from `share` on.
+type Values = [f64; 12];
+
+/// Table of contacts of one wheel/rail pair over shift and roll. Immutable; share it between wheels and threads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeometryTable {
+    placement: Placement,
+    rail_origin_y: f64,
+    rail: Profile,
+    /// [roll][shift]
+    gaps: Vec<Gaps>,
+    values: [Vec<Values>; 2],
+}
+
+/// Gap of a zone that has no rail under it, m.
+const NO_RAIL: f64 = 0.2;
+
+/// Corner of a table cell and the four bilinear weights.
+#[derive(Clone, Copy)]
+struct Place {
+    node: usize,
+    weights: [f64; 4],
+}
+
+impl Place {
+    #[inline]
+    fn nodes(&self) -> [usize; 4] {
+        [self.node, self.node + 1, self.node + SHIFTS, self.node + SHIFTS + 1]
+    }
+}
+
+impl GeometryTable {
+    /// How the pair was placed.
+    #[must_use]
+    pub fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// Side coordinate (m from the track centre) of the rail profile's origin at nominal gauge; z = 0 is the highest
+    /// point of the inclined head.
+    #[must_use]
+    pub fn rail_origin_y(&self) -> f64 {
+        self.rail_origin_y
+    }
+
+    /// The rail as it stands: inclined, its highest point at z = 0.
+    #[must_use]
+    pub fn rail(&self) -> &Profile {
+        &self.rail
+    }
+
+    #[inline]
+    fn place(&self, dy: f64, roll: f64) -> Result<Place, OutOfTable> {
+        let x = (dy + SHIFT_RANGE) * (1.0 / SHIFT_STEP);
+        let r = (roll + ROLL_RANGE) * (1.0 / ROLL_STEP);
+        let (last_x, last_r) = ((SHIFTS - 1) as f64, (ROLLS - 1) as f64);
+        if !(x >= 0.0 && x <= last_x && r >= 0.0 && r <= last_r) {
+            return Err(OutOfTable { dy, roll });
+        }
+        let (i, j) = ((x as usize).min(SHIFTS - 2), (r as usize).min(ROLLS - 2));
+        let (u, v) = (x - i as f64, r - j as f64);
+        Ok(Place {
+            node: j * SHIFTS + i,
+            weights: [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v],
+        })
+    }
+
+    #[inline]
+    fn gaps_at(&self, place: &Place) -> Gaps {
+        let mut out = Gaps { gap: [0.0; 2], yaw: [0.0; 2] };
+        for (n, w) in place.nodes().into_iter().zip(place.weights) {
+            let node = &self.gaps[n];
+            for zone in 0..2 {
+                out.gap[zone] += w * node.gap[zone];
+                out.yaw[zone] += w * node.yaw[zone];
+            }
+        }
+        out
+    }
+
+    #[inline]
+    fn values_at(&self, place: &Place, zone: usize) -> Values {
+        let mut out = [0.0; 12];
+        for (n, w) in place.nodes().into_iter().zip(place.weights) {
+            for (o, v) in out.iter_mut().zip(&self.values[zone][n]) {
+                *o += w * v;
+            }
+        }
+        out
+    }
+
+    /// Contacts of the wheel at shift `dy`, `roll` and depth `dz`; returns how many of `out` were written (0 to 2).
+    ///
+    /// - `dy` (m): side coordinate of the wheel's tape-circle point relative to the rail less its nominal value, in rail
+    ///   axes, + outward, towards flange contact;
+    /// - `roll` (rad): wheel less rail, in side coordinates (+ lowers the field side);
+    /// - `dz` (m): depth of the tape-circle point below the top of rail;
+    /// - `yaw` (rad): wheel less rail; only its square is used.
+    ///
+    /// Does not allocate.
+    ///
+    /// # Errors
+    /// Shift or roll outside the table, or not a number.
+    #[inline]
+    pub fn contacts(
+        &self,
+        dy: f64,
+        roll: f64,
+        dz: f64,
+        yaw: f64,
+        out: &mut [ContactPoint; 2],
+    ) -> Result<usize, OutOfTable> {
+        let place = self.place(dy, roll)?;
+        let gaps = self.gaps_at(&place);
+        let mut count = 0;
+        for (zone, name) in [Zone::Tread, Zone::Flange].into_iter().enumerate() {
+            let penetration = dz - gaps.gap[zone] + gaps.yaw[zone] * yaw * yaw;
+            if penetration > 0.0 {
+                let v = self.values_at(&place, zone);
+                if v[0] > 0.0 {
+                    out[count] = point(name, penetration, &v);
+                    count += 1;
+                }
+            }
+        }
+        Ok(count)
+    }
+
+    /// Vertical gap (m) of each zone, tread and flange, with the tape-circle point at the top of rail; without yaw.
+    ///
+    /// # Errors
+    /// Shift or roll outside the table, or not a number.
+    pub fn gap(&self, dy: f64, roll: f64) -> Result<[f64; 2], OutOfTable> {
+        Ok(self.gaps_at(&self.place(dy, roll)?).gap)
+    }
+
+    /// The contact that a wheel just touching makes first: that of the zone with the smaller gap, penetration zero.
+    ///
+    /// # Errors
+    /// Shift or roll outside the table, or not a number.
+    pub fn touching(&self, dy: f64, roll: f64) -> Result<ContactPoint, OutOfTable> {
+        let place = self.place(dy, roll)?;
+        let gap = self.gaps_at(&place).gap;
+        let (zone, name) = if gap[0] <= gap[1] { (0, Zone::Tread) } else { (1, Zone::Flange) };
+        Ok(point(name, 0.0, &self.values_at(&place, zone)))
+    }
+}
+
+#[inline]
+fn point(zone: Zone, penetration: f64, v: &Values) -> ContactPoint {
+    ContactPoint {
+        zone,
+        penetration,
+        share: v[0],
+        y_rail: v[1],
+        z_rail: v[2],
+        y_wheel: v[3],
+        z_wheel: v[4],
+        angle: v[5],
+        hertz: v[6],
+        a1: v[7],
+        b1: v[8],
+        c11: v[9],
+        c22: v[10],
+        c23: v[11],
+    }
+}

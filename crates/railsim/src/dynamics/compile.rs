@@ -1,0 +1,205 @@
+//! A case, as written, becomes a [`Model`]: names turn into indices, points into levers, preloads are solved, wheel and
+//! rail profiles into a geometry table. After this nobody looks at the document.
+
+use crate::body::{RigidBody, Wheelset};
+use crate::connection::{Law, Mount};
+use crate::contact::geometry_table::{GeometryTable, Placement};
+use crate::contact::profile::{Profile, ProfileKind};
+use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
+use crate::dynamics::preload;
+use crate::error::{Error, Fault, KeyPath, Result};
+use crate::math::Vec3;
+use crate::schema::{Case, Track, Vehicle};
+use crate::track::DeviationField;
+use crate::track::Layout;
+
+/// Compiles a case.
+///
+/// # Errors
+/// Faults in profiles, track or the vehicle's structure, each with its key path from the root of the case.
+pub fn model(case: &Case) -> Result<Model> {
+    let vehicle = &case.vehicle;
+    let (bodies, wheelsets) = bodies(vehicle);
+    let links = links(case)?;
+    let sensors = vehicle
+        .sensors
+        .iter()
+        .map(|sensor| {
+            let body = index(vehicle, &sensor.body, &sensor.key)?;
+            let p_B = Vec3::from(sensor.position) - position(vehicle, body);
+            Ok(Sensor { name: sensor.name.clone(), body, p_B })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let speed_hold = match &vehicle.speed_hold {
+        Some(hold) => Some(SpeedHold {
+            body: index(vehicle, &hold.body, &KeyPath::of("vehicle.speed_hold.body"))?,
+            stiffness: hold.stiffness,
+            damping: hold.damping,
+        }),
+        None => None,
+    };
+    let track = &case.track;
+    let layout = Layout::new(&track.layout, track.length, &KeyPath::of("track.layout"))?;
+    let deviation = DeviationField::new(
+        &track.irregularity,
+        track.length,
+        track.fade_start,
+        track.fade_in,
+        &KeyPath::of("track.irregularity"),
+    )?;
+    let contact = contact(case)?;
+    Model::new(
+        bodies,
+        wheelsets,
+        links,
+        sensors,
+        speed_hold,
+        layout,
+        deviation,
+        Some(support(track)),
+        contact,
+        case.run.gravity,
+    )
+}
+
+/// Geometry table of the case's wheel on its rail, without the rest of the model.
+///
+/// # Errors
+/// Faults in the profiles.
+pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
+    let radius = case.vehicle.wheelsets.first();
+    let Some(set) = radius else {
+        return Err(Error::input(Fault::new(
+            KeyPath::of("vehicle.wheelset"),
+            "none",
+            "at least one wheelset",
+        )));
+    };
+    if let Some(other) = case
+        .vehicle
+        .wheelsets
+        .iter()
+        .find(|w| w.radius != set.radius || w.tape_half_distance != set.tape_half_distance)
+    {
+        return Err(Error::input(Fault::new(
+            other.key.clone(),
+            format!("radius {} m, tape_half_distance {} m", other.radius, other.tape_half_distance),
+            format!("the same as the first wheelset's, {} m and {} m", set.radius, set.tape_half_distance),
+        )));
+    }
+    let wheel = profile(case, &case.run.wheel_profile, ProfileKind::Wheel)?;
+    let rail = profile(case, &case.track.rail_profile, ProfileKind::Rail)?;
+    let placement = Placement {
+        gauge: case.track.gauge,
+        gauge_point_depth: case.track.gauge_point_depth,
+        rail_inclination: case.track.rail_inclination,
+        tape_half_distance: set.tape_half_distance,
+        wheel_radius: set.radius,
+        youngs_modulus: case.vehicle.contact.youngs_modulus,
+        poisson: case.vehicle.contact.poisson,
+    };
+    GeometryTable::build(&wheel, &rail, &placement)
+}
+
+fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
+    let at = KeyPath::of("profiles").key(name).key("points");
+    let Some(data) = case.profiles.get(name) else {
+        return Err(Error::input(Fault::new(at, "nothing", "the points of the profile")));
+    };
+    Profile::new(&data.points, kind, &at)
+}
+
+fn contact(case: &Case) -> Result<Contact> {
+    let settings = &case.vehicle.contact;
+    let mass: f64 = case.vehicle.bodies.iter().map(|b| b.mass).sum::<f64>()
+        + case.vehicle.wheelsets.iter().map(|w| w.mass).sum::<f64>();
+    let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
+    Ok(Contact::Profiles {
+        table: Box::new(geometry_table(case)?),
+        law: case.run.creep.clone(),
+        shear_modulus: settings.youngs_modulus / (2.0 * (1.0 + settings.poisson)),
+        dissipation: if wheel_load > 0.0 { settings.damping / wheel_load } else { 0.0 },
+        friction: case.run.friction,
+    })
+}
+
+fn support(track: &Track) -> Support {
+    let s = &track.support;
+    let lever = s.half_base * s.half_base;
+    Support {
+        mass: s.mass,
+        inertia: s.Ixx,
+        stiffness: [s.ky, s.kz, s.kz * lever],
+        damping: [s.cy, s.cz, s.cz * lever],
+    }
+}
+
+fn bodies(vehicle: &Vehicle) -> (Vec<RigidBody>, Vec<Wheelset>) {
+    let bodies = vehicle
+        .bodies
+        .iter()
+        .map(|b| RigidBody {
+            name: b.name.clone(),
+            mass: b.mass,
+            inertia: Vec3::from(b.inertia),
+            position: Vec3::from(b.position),
+        })
+        .collect();
+    let wheelsets = vehicle
+        .wheelsets
+        .iter()
+        .map(|w| Wheelset {
+            body: RigidBody {
+                name: w.name.clone(),
+                mass: w.mass,
+                inertia: Vec3::from(w.inertia),
+                position: Vec3::from(w.position),
+            },
+            radius: w.radius,
+            tape_half_distance: w.tape_half_distance,
+        })
+        .collect();
+    (bodies, wheelsets)
+}
+
+/// Connections with preloads solved for the design condition, in which the vehicle stands at its written heights.
+fn links(case: &Case) -> Result<Vec<Link>> {
+    let vehicle = &case.vehicle;
+    let mut links = Vec::with_capacity(vehicle.connections.len());
+    for connection in &vehicle.connections {
+        let at = connection.key.key("between");
+        let a = index(vehicle, &connection.between[0], &at.index(0))?;
+        let b = index(vehicle, &connection.between[1], &at.index(1))?;
+        if connection.preload && !matches!(connection.law, Law::Bushing(_)) {
+            return Err(Error::input(Fault::new(
+                connection.key.key("carries_weight"),
+                "true",
+                "false: only a `bushing` carries the vehicle's weight",
+            )));
+        }
+        let mount = Mount {
+            p_A: Vec3::from(connection.points[0]) - position(vehicle, a),
+            p_B: Vec3::from(connection.points[1]) - position(vehicle, b),
+            preload: Vec3::zeros(),
+        };
+        links.push(Link { name: connection.name.clone(), a, b, mount, law: connection.law.clone() });
+    }
+    let carries: Vec<bool> = vehicle.connections.iter().map(|c| c.preload).collect();
+    let (bodies, wheelsets) = bodies(&case.design);
+    preload::solve(&bodies, &wheelsets, &mut links, &carries, case.run.gravity)?;
+    Ok(links)
+}
+
+fn index(vehicle: &Vehicle, name: &str, at: &KeyPath) -> Result<usize> {
+    let names = vehicle.bodies.iter().map(|b| &b.name).chain(vehicle.wheelsets.iter().map(|w| &w.name));
+    names.into_iter().position(|n| n == name).ok_or_else(|| {
+        Error::input(Fault::new(at.clone(), format!("`{name}`"), "the name of a body or wheelset"))
+    })
+}
+
+fn position(vehicle: &Vehicle, index: usize) -> Vec3 {
+    Vec3::from(match vehicle.bodies.get(index) {
+        Some(body) => body.position,
+        None => vehicle.wheelsets[index - vehicle.bodies.len()].position,
+    })
+}

@@ -1,0 +1,326 @@
+//! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
+
+use crate::body::{Wrench, kinematics, rigid_body, wheelset};
+use crate::connection::ForceLaw;
+use crate::contact::creep::{CreepForce, Patch};
+use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
+use crate::contact::geometry_table::{ContactPoint, GeometryTable};
+use crate::contact::normal::hunt_crossley;
+use crate::contact::textbook::Textbook;
+use crate::dynamics::model::{Contact, Model};
+use crate::dynamics::scratch::{ContactForce, LeftRail, Scratch, Wheel};
+use crate::dynamics::state::StateMap;
+use crate::dynamics::stiff;
+use crate::integrator::{StiffBlock, System};
+use crate::math::Vec3;
+use crate::track::Deviation;
+
+/// Below this rolling speed (m/s) creepages are formed with it instead, so that standstill stays finite.
+pub const LEAST_ROLLING_SPEED: f64 = 0.1;
+
+/// Where the moving frame of the speed hold is: constant acceleration from a start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpeedProgram {
+    /// Place at t = 0, m.
+    pub s: f64,
+    /// Speed at t = 0, m/s.
+    pub speed: f64,
+    /// m/s2.
+    pub acceleration: f64,
+}
+
+impl SpeedProgram {
+    /// Place and speed at time `t`.
+    #[must_use]
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        (self.s + t * (self.speed + 0.5 * self.acceleration * t), self.speed + self.acceleration * t)
+    }
+}
+
+/// A model with the buffers of one run: what an integrator steps.
+#[derive(Debug)]
+pub struct VehicleSystem<'m> {
+    /// The model.
+    pub model: &'m Model,
+    /// Buffers of the last evaluation.
+    pub scratch: Scratch,
+    /// Speed asked for.
+    pub program: SpeedProgram,
+    /// False on the ideal design track: irregularities are left out.
+    pub irregular: bool,
+    /// False at standstill: contacts stick and creep forces are left out.
+    pub creeping: bool,
+    map: StateMap,
+}
+
+impl<'m> VehicleSystem<'m> {
+    /// A system at rest.
+    #[must_use]
+    pub fn new(model: &'m Model, program: SpeedProgram) -> Self {
+        Self {
+            model,
+            scratch: Scratch::new(model),
+            program,
+            irregular: true,
+            creeping: true,
+            map: model.map(),
+        }
+    }
+
+    fn kinematics_stage(&mut self, x: &[f64], dx: &mut [f64]) {
+        for i in 0..self.model.count() {
+            let q = &x[self.map.q(i)];
+            let frame = self.model.layout.frame(q[0]);
+            let spins = i >= self.model.bodies.len();
+            let k = kinematics(q, &x[self.map.u(i)], frame, spins, &mut dx[self.map.q(i)]);
+            self.scratch.wrench[i] = Wrench {
+                f: Vec3::new(0.0, 0.0, self.model.rigid(i).mass * self.model.gravity),
+                m: Vec3::zeros(),
+            };
+            self.scratch.kinematics[i] = k;
+        }
+    }
+
+    fn contact_stage(&mut self, x: &[f64]) {
+        let first = self.model.bodies.len();
+        for w in 0..self.model.wheelsets.len() {
+            let q = &x[self.map.q(first + w)];
+            let deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+            self.scratch.deviation[w] = deviation;
+            let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
+            let track = TrackMotion { y: tq[0], z: tq[1], phi: tq[2], vy: tu[0], vz: tu[1], vphi: tu[2] };
+            let mut force = Vec3::zeros();
+            let mut moment = Vec3::zeros();
+            let mut load = [0.0; 3];
+            for (side, sigma) in [-1.0, 1.0].into_iter().enumerate() {
+                let wheel = self.wheel(w, sigma, q, &track, &deviation);
+                for contact in wheel.contacts.iter().flatten() {
+                    let f = total_force(contact);
+                    force += f;
+                    moment += contact.placed.lever.cross(&f);
+                    let [y, z] = contact.placed.point;
+                    load[0] -= f.y;
+                    load[1] -= f.z;
+                    load[2] -= y * f.z - z * f.y;
+                }
+                self.scratch.wheels[w][side] = wheel;
+            }
+            let k = &self.scratch.kinematics[first + w];
+            self.scratch.wrench[first + w].f += k.frame.R_IT * force;
+            self.scratch.wheel_moment[w] = k.R_TB.tr_mul(&moment);
+            self.scratch.track_load[w] = load;
+        }
+    }
+
+    /// One wheel: place it on its rail, look its contacts up, give each its normal and creep force.
+    fn wheel(&mut self, w: usize, sigma: f64, q: &[f64], track: &TrackMotion, dev: &Deviation) -> Wheel {
+        let set = &self.model.wheelsets[w];
+        let k = &self.scratch.kinematics[self.model.bodies.len() + w];
+        let speed = k.v_T.x.abs().max(LEAST_ROLLING_SPEED);
+        let mut wheel = Wheel::default();
+        match &self.model.contact {
+            Contact::Profiles { table, law, shear_modulus, dissipation, friction } => {
+                let rail_y = table.rail_origin_y();
+                let rail = rail_pose(sigma, rail_y, dev, track, k.s_dot);
+                let nominal = set.tape_half_distance - rail_y;
+                let pose = wheel_pose(sigma, q, k, set.tape_half_distance, set.radius, nominal, &rail);
+                wheel.shift = pose.shift;
+                let mut found = [ContactPoint::default(); 2];
+                let Some(count) = look_up(table, &pose, &mut found) else {
+                    self.scratch.left_rail =
+                        Some(LeftRail { wheelset: w, side: sigma, shift: pose.shift, roll: pose.roll });
+                    return wheel;
+                };
+                for (slot, point) in found[..count].iter().enumerate() {
+                    let placed = place(sigma, point, &rail, pose.yaw, set.radius, q, k, track, speed);
+                    let n =
+                        hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
+                    let normal = point.share * n.force;
+                    let mut contact = ContactForce {
+                        geometry: Some(*point),
+                        placed,
+                        normal,
+                        normal_slope: [point.share * n.stiffness, point.share * n.damping],
+                        creep: [0.0; 2],
+                        creep_slope: [0.0; 2],
+                    };
+                    if self.creeping && normal > 0.0 && *friction > 0.0 {
+                        let root = normal.cbrt();
+                        let patch = Patch {
+                            a: point.a1 * root,
+                            b: point.b1 * root,
+                            n: normal,
+                            c11: point.c11,
+                            c22: point.c22,
+                            c23: point.c23,
+                            shear_modulus: *shear_modulus,
+                        };
+                        let f = law.force(&patch, &placed.creepage, *friction);
+                        contact.creep = [f.fx, f.fy];
+                        contact.creep_slope = secant(&patch, &placed, &f, speed);
+                    }
+                    add(&mut wheel, slot, contact, sigma);
+                }
+            }
+            Contact::Textbook(book) => {
+                let rail = rail_pose(sigma, set.tape_half_distance, dev, track, k.s_dot);
+                let pose = wheel_pose(sigma, q, k, set.tape_half_distance, set.radius, 0.0, &rail);
+                wheel.shift = pose.shift;
+                if pose.depth > 0.0 {
+                    let contact =
+                        textbook(book, sigma, &pose, set.radius, set.tape_half_distance, k, track, speed);
+                    add(&mut wheel, 0, contact, sigma);
+                }
+            }
+        }
+        wheel
+    }
+
+    fn connection_stage(&mut self) {
+        let (poses, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
+        for link in &self.model.links {
+            let pair = link.law.wrench(&poses[link.a].pose, &poses[link.b].pose, &link.mount);
+            wrench[link.a].f += pair.on_A.f;
+            wrench[link.a].m += pair.on_A.m;
+            wrench[link.b].f += pair.on_B.f;
+            wrench[link.b].m += pair.on_B.m;
+        }
+    }
+
+    fn speed_hold_stage(&mut self, t: f64, x: &[f64]) {
+        if let Some(hold) = &self.model.speed_hold {
+            let (s, v) = self.program.at(t);
+            let k = &self.scratch.kinematics[hold.body];
+            let force = hold.stiffness * (s - x[self.map.q(hold.body)][0]) + hold.damping * (v - k.s_dot);
+            self.scratch.wrench[hold.body].f += k.frame.R_IT.column(0) * force;
+        }
+    }
+
+    fn acceleration_stage(&mut self, x: &[f64], dx: &mut [f64]) {
+        let first = self.model.bodies.len();
+        for i in 0..self.model.count() {
+            let body = self.model.rigid(i);
+            let (k, wrench) = (&self.scratch.kinematics[i], &self.scratch.wrench[i]);
+            let du = &mut dx[self.map.u(i)];
+            rigid_body::translate(k, body.mass, wrench, du);
+            if i < first {
+                rigid_body::rotate(k, &body.inertia, &k.pose.R.tr_mul(&wrench.m), du);
+            } else {
+                wheelset::rotate(k, &body.inertia, wrench, &self.scratch.wheel_moment[i - first], du);
+            }
+        }
+        for w in 0..self.model.wheelsets.len() {
+            let (tq, tu) = (self.map.track_q(w), self.map.track_u(w));
+            match &self.model.support {
+                Some(support) => {
+                    let m = [support.mass, support.mass, support.inertia];
+                    for d in 0..3 {
+                        let (q, v) = (x[tq.start + d], x[tu.start + d]);
+                        dx[tq.start + d] = v;
+                        dx[tu.start + d] = (self.scratch.track_load[w][d]
+                            - support.stiffness[d] * q
+                            - support.damping[d] * v)
+                            / m[d];
+                    }
+                }
+                None => {
+                    dx[tq].fill(0.0);
+                    dx[tu].fill(0.0);
+                }
+            }
+        }
+    }
+}
+
+#[inline]
+fn look_up(table: &GeometryTable, pose: &WheelPose, out: &mut [ContactPoint; 2]) -> Option<usize> {
+    table.contacts(pose.shift, pose.roll, pose.depth, pose.yaw, out).ok()
+}
+
+/// Force of one contact on the wheel, track axes, N.
+#[inline]
+pub(crate) fn total_force(c: &ContactForce) -> Vec3 {
+    c.normal * c.placed.e_n + c.creep[1] * c.placed.e_t + Vec3::new(c.creep[0], 0.0, 0.0)
+}
+
+#[inline]
+fn add(wheel: &mut Wheel, slot: usize, contact: ContactForce, sigma: f64) {
+    let f = total_force(&contact);
+    wheel.Q -= f.z;
+    wheel.Y -= sigma * f.y;
+    wheel.contacts[slot] = Some(contact);
+}
+
+/// Kalker's slopes, reduced by what saturation leaves of the linear force: creep damping for the implicit scheme.
+#[inline]
+fn secant(p: &Patch, placed: &PlacedContact, f: &CreepForce, speed: f64) -> [f64; 2] {
+    let c = &placed.creepage;
+    let area = p.a * p.b;
+    let (f11, f22) = (p.shear_modulus * area * p.c11, p.shear_modulus * area * p.c22);
+    let linear_x = f11 * c.xi;
+    let linear_y = f22 * c.eta + p.shear_modulus * area * area.sqrt() * p.c23 * c.phi;
+    let linear = linear_x.hypot(linear_y);
+    let left = if linear > 0.0 { (f.fx.hypot(f.fy) / linear).min(1.0) } else { 1.0 };
+    [left * f11 / speed, left * f22 / speed]
+}
+
+#[inline]
+#[allow(clippy::too_many_arguments)]
+fn textbook(
+    book: &Textbook,
+    sigma: f64,
+    pose: &WheelPose,
+    radius: f64,
+    half: f64,
+    k: &crate::body::Kinematics,
+    track: &TrackMotion,
+    speed: f64,
+) -> ContactForce {
+    use crate::contact::creep::Creepage;
+    // In axle axes the contact is below the tape circle, at the rolling radius there.
+    let lever = k.R_TB * Vec3::new(0.0, sigma * half, radius + book.conicity * pose.shift);
+    let w_T = k.R_TB * k.w_B;
+    let slip = k.v_T + w_T.cross(&lever) - Vec3::new(0.0, track.vy, track.vz + sigma * half * track.vphi);
+    let creepage = Creepage { xi: slip.x / speed, eta: sigma * slip.y / speed, phi: sigma * w_T.z / speed };
+    let rate = slip.z;
+    let normal = (book.stiffness * pose.depth + book.damping * rate).max(0.0);
+    ContactForce {
+        geometry: None,
+        placed: PlacedContact {
+            lever,
+            point: [sigma * half + track.y, track.z],
+            e_t: Vec3::new(0.0, sigma, 0.0),
+            e_n: Vec3::new(0.0, 0.0, -1.0),
+            penetration: pose.depth,
+            approach_rate: rate,
+            slip: [slip.x, sigma * slip.y],
+            creepage,
+        },
+        normal,
+        normal_slope: [book.stiffness, book.damping],
+        creep: [-book.f11 * creepage.xi, -book.f22 * creepage.eta - book.f23 * creepage.phi],
+        creep_slope: [book.f11 / speed, book.f22 / speed],
+    }
+}
+
+impl System for VehicleSystem<'_> {
+    fn size(&self) -> usize {
+        self.map.size()
+    }
+
+    fn rhs(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.kinematics_stage(x, dx);
+        self.contact_stage(x);
+        self.connection_stage();
+        self.speed_hold_stage(t, x);
+        self.acceleration_stage(x, dx);
+    }
+
+    fn stiff_blocks(&self) -> &[StiffBlock] {
+        &self.model.stiff_blocks
+    }
+
+    fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
+        stiff::matrices(self.model, &self.scratch, block, k, c);
+    }
+}

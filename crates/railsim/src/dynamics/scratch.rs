@@ -1,0 +1,87 @@
+//! Buffers of the right-hand side, each with its one writer.
+
+use crate::body::{Kinematics, Wrench};
+use crate::contact::creepage::PlacedContact;
+use crate::contact::geometry_table::ContactPoint;
+use crate::dynamics::model::Model;
+use crate::math::Vec3;
+use crate::track::Deviation;
+
+/// One contact with its forces. Written by the contact stage.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactForce {
+    /// Geometry from the table; `None` for textbook contact.
+    pub geometry: Option<ContactPoint>,
+    /// Where it is and how it slides.
+    pub placed: PlacedContact,
+    /// Normal force, N.
+    pub normal: f64,
+    /// dN/d(penetration), N/m, and dN/d(rate), N s/m.
+    pub normal_slope: [f64; 2],
+    /// Creep force on the wheel, forward and along the outward tangent, N.
+    pub creep: [f64; 2],
+    /// Secant creep damping forward and lateral, N s/m.
+    pub creep_slope: [f64; 2],
+}
+
+/// One wheel on its rail. Written by the contact stage.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wheel {
+    /// Contacts, tread before flange.
+    pub contacts: [Option<ContactForce>; 2],
+    /// Outward lateral shift of the wheel on its rail, m.
+    pub shift: f64,
+    /// Vertical wheel force on the rail, N.
+    pub Q: f64,
+    /// Lateral wheel force on the rail, outward, N.
+    pub Y: f64,
+}
+
+/// A wheel that left its rail's geometry table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeftRail {
+    /// Wheelset index.
+    pub wheelset: usize,
+    /// -1 left, +1 right.
+    pub side: f64,
+    /// Outward shift on the rail, m.
+    pub shift: f64,
+    /// Roll against the rail, rad.
+    pub roll: f64,
+}
+
+/// Buffers. May be thrown away at any step.
+#[derive(Debug, Clone)]
+pub struct Scratch {
+    /// Written by the kinematics stage.
+    pub kinematics: Vec<Kinematics>,
+    /// Forces and moments by connections and weight on each body, and wheel forces (not their moments); inertial axes.
+    pub wrench: Vec<Wrench>,
+    /// Moment of wheel forces about each wheelset's centre, axle axes. Written by the contact stage.
+    pub wheel_moment: Vec<Vec3>,
+    /// Wheel forces on each track mass: y, z, moment about x. Written by the contact stage.
+    pub track_load: Vec<[f64; 3]>,
+    /// Wheels of each wheelset: left, right. Written by the contact stage.
+    pub wheels: Vec<[Wheel; 2]>,
+    /// Irregularity under each wheelset. Written by the contact stage.
+    pub deviation: Vec<Deviation>,
+    /// Set by the contact stage, cleared by whoever reads it.
+    pub left_rail: Option<LeftRail>,
+}
+
+impl Scratch {
+    /// Buffers for a model.
+    #[must_use]
+    pub fn new(model: &Model) -> Self {
+        let (all, ws) = (model.count(), model.wheelsets.len());
+        Self {
+            kinematics: vec![Kinematics::zero(); all],
+            wrench: vec![Wrench::zero(); all],
+            wheel_moment: vec![Vec3::zeros(); ws],
+            track_load: vec![[0.0; 3]; ws],
+            wheels: vec![[Wheel::default(); 2]; ws],
+            deviation: vec![Deviation::default(); ws],
+            left_rail: None,
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Where everything stands in the state vector.
+//!
+//! Bodies first, 12 numbers each: `s y z phi theta psi | vx vy vz wx wy wz`. Then wheelsets with the track mass under
+//! them, 18 each: `s y z phi theta psi  y_t z_t phi_t | vx vy vz wx wy wz  vy_t vz_t vphi_t`, so that a wheelset and its
+//! track are one contiguous block of positions and one of speeds: the block that an implicit scheme treats.
+
+use std::ops::Range;
+
+/// Numbers of a body's state.
+pub const BODY: usize = 12;
+/// Numbers of the state of a wheelset and its track mass.
+pub const WHEELSET: usize = 18;
+/// Half of that: positions, or speeds.
+pub const PAIR: usize = 9;
+
+/// Layout of the state vector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StateMap {
+    /// Number of bodies that are no wheelsets.
+    pub bodies: usize,
+    /// Number of wheelsets.
+    pub wheelsets: usize,
+}
+
+impl StateMap {
+    /// Length of the state vector.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.bodies * BODY + self.wheelsets * WHEELSET
+    }
+
+    /// First number of body `i` (bodies, then wheelsets).
+    #[must_use]
+    pub fn start(&self, i: usize) -> usize {
+        if i < self.bodies { i * BODY } else { self.bodies * BODY + (i - self.bodies) * WHEELSET }
+    }
+
+    /// Six coordinates of body or wheelset `i`.
+    #[must_use]
+    pub fn q(&self, i: usize) -> Range<usize> {
+        let start = self.start(i);
+        start..start + 6
+    }
+
+    /// Six speeds of body or wheelset `i`.
+    #[must_use]
+    pub fn u(&self, i: usize) -> Range<usize> {
+        let start = self.start(i) + if i < self.bodies { 6 } else { PAIR };
+        start..start + 6
+    }
+
+    /// Three coordinates of the track mass under wheelset `w`.
+    #[must_use]
+    pub fn track_q(&self, w: usize) -> Range<usize> {
+        let start = self.start(self.bodies + w) + 6;
+        start..start + 3
+    }
+
+    /// Three speeds of the track mass under wheelset `w`.
+    #[must_use]
+    pub fn track_u(&self, w: usize) -> Range<usize> {
+        let start = self.start(self.bodies + w) + PAIR + 6;
+        start..start + 3
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_the_state_has_exactly_one_owner() {
+        let map = StateMap { bodies: 3, wheelsets: 6 };
+        let mut owners = vec![0; map.size()];
+        let mut own = |r: Range<usize>| r.for_each(|i| owners[i] += 1);
+        for i in 0..9 {
+            own(map.q(i));
+            own(map.u(i));
+        }
+        for w in 0..6 {
+            own(map.track_q(w));
+            own(map.track_u(w));
+        }
+        assert!(owners.iter().all(|n| *n == 1));
+    }
+}

@@ -1,0 +1,72 @@
+//! Stiffness and damping of one wheelset on its track mass, for implicit schemes: contact normal, creep, track
+//! support, all at the last evaluated state. Approximate on purpose (a W-method keeps its order with any matrix): the
+//! contact planes stand still, creep is the secant slope, the suspension above is left out.
+
+use crate::contact::creepage::PlacedContact;
+use crate::dynamics::model::Model;
+use crate::dynamics::scratch::Scratch;
+use crate::dynamics::state::PAIR;
+use crate::math::Vec3;
+
+/// Relative speed along `e` of wheel against rail per unit of each of the pair's nine speeds.
+fn direction(placed: &PlacedContact, e: &Vec3) -> [f64; PAIR] {
+    let turn = placed.lever.cross(e);
+    let [y, z] = placed.point;
+    [e.x, e.y, e.z, turn.x, turn.y, turn.z, -e.y, -e.z, -(y * e.z - z * e.y)]
+}
+
+/// Adds `factor * left * right'`.
+fn add_outer(m: &mut [f64], factor: f64, left: &[f64; PAIR], right: &[f64; PAIR]) {
+    for i in 0..PAIR {
+        for j in 0..PAIR {
+            m[i * PAIR + j] += factor * left[i] * right[j];
+        }
+    }
+}
+
+/// Fills `k` and `c` (9 x 9, row-major): `d(speeds)/dt ~ -k positions - c speeds` for wheelset `w` and its track.
+pub fn matrices(model: &Model, scratch: &Scratch, w: usize, k: &mut [f64], c: &mut [f64]) {
+    k.fill(0.0);
+    c.fill(0.0);
+    for contact in scratch.wheels[w].iter().flat_map(|wheel| wheel.contacts.iter().flatten()) {
+        let n = direction(&contact.placed, &contact.placed.e_n);
+        let t = direction(&contact.placed, &contact.placed.e_t);
+        let x = direction(&contact.placed, &Vec3::x());
+        // Penetration does not depend on the place along the track nor on the axle's turned angle.
+        let mut n_q = n;
+        n_q[0] = 0.0;
+        n_q[4] = 0.0;
+        add_outer(k, contact.normal_slope[0], &n, &n_q);
+        add_outer(c, contact.normal_slope[1], &n, &n);
+        add_outer(c, contact.creep_slope[0], &x, &x);
+        add_outer(c, contact.creep_slope[1], &t, &t);
+    }
+    let body = &model.wheelsets[w].body;
+    let mut mass = [0.0; PAIR];
+    mass[..3].fill(body.mass);
+    mass[3..6].copy_from_slice(body.inertia.as_slice());
+    match &model.support {
+        Some(support) => {
+            mass[6..].copy_from_slice(&[support.mass, support.mass, support.inertia]);
+            for d in 0..3 {
+                let diagonal = (6 + d) * PAIR + 6 + d;
+                k[diagonal] += support.stiffness[d];
+                c[diagonal] += support.damping[d];
+            }
+        }
+        // A rigid track does not move: no row, no column.
+        None => {
+            mass[6..].fill(f64::INFINITY);
+            for i in 0..PAIR {
+                k[i * PAIR + 6..(i + 1) * PAIR].fill(0.0);
+                c[i * PAIR + 6..(i + 1) * PAIR].fill(0.0);
+            }
+        }
+    }
+    for i in 0..PAIR {
+        for j in 0..PAIR {
+            k[i * PAIR + j] /= mass[i];
+            c[i * PAIR + j] /= mass[i];
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Channels: what a run records, with unit and meaning. The unit follows from the last part of a name.
+
+use crate::body::coordinate;
+use crate::dynamics::{Contact, Model};
+use crate::error::Result;
+use crate::schema::Case;
+
+/// A recorded quantity.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Channel {
+    /// Dotted name, e.g. `ws3.left.Q`.
+    pub name: String,
+    /// SI unit; `1` for a ratio.
+    pub unit: &'static str,
+    /// One line for a person.
+    pub meaning: &'static str,
+}
+
+/// Last part of a name, unit, meaning. Sorted by name.
+const PARTS: [(&str, &str, &str); 38] = [
+    ("LV", "1", "lateral over vertical wheel force, Y/Q"),
+    ("N_flange", "N", "normal force of the flange contact"),
+    ("N_tread", "N", "normal force of the tread contact"),
+    ("Q", "N", "vertical wheel force, + presses on the rail"),
+    ("Y", "N", "lateral wheel force on the rail, + outward"),
+    ("ax", "m/s2", "acceleration along the body's x axis, without gravity"),
+    ("ay", "m/s2", "acceleration along the body's y axis (right), without gravity"),
+    ("az", "m/s2", "acceleration along the body's z axis (down), without gravity"),
+    ("contact_y", "m", "lateral place of the main contact on the wheel profile, + to the field side"),
+    ("creep_x", "1", "longitudinal creepage of the main contact"),
+    ("creep_y", "1", "lateral creepage of the main contact, + outward"),
+    ("cross_level", "m", "irregularity: height of the left rail above the right over 1.5 m"),
+    ("gauge", "m", "irregularity: widening of the gauge"),
+    ("lateral", "m", "irregularity: lateral deviation of the centre line, + right"),
+    ("omega_x", "rad/s", "roll rate"),
+    ("omega_y", "rad/s", "pitch rate; of a wheelset its spin, negative rolling forward"),
+    ("omega_z", "rad/s", "yaw rate"),
+    ("phi", "rad", "roll against the track frame"),
+    ("psi", "rad", "yaw against the track frame, + nose right"),
+    ("s", "m", "place of the vehicle along the track"),
+    ("shift", "m", "outward lateral shift of the wheel on its rail"),
+    ("speed_hold", "N", "force of the speed controller, + forward"),
+    ("spin", "1/m", "spin creepage of the main contact"),
+    ("sum_LV", "1", "axle-sum L/V: |Y/Q| left plus |Y/Q| right"),
+    ("sum_Y", "N", "track-shifting force of the axle, Y right minus Y left, + right"),
+    ("t", "s", "time"),
+    ("theta", "rad", "pitch against the track frame, + nose up"),
+    ("track_phi", "rad", "roll of the track mass"),
+    ("track_y", "m", "lateral displacement of the track mass, + right"),
+    ("track_z", "m", "vertical displacement of the track mass, + down"),
+    ("v", "m/s", "speed of the vehicle along the track"),
+    ("vertical", "m", "irregularity: vertical deviation of the centre line, + down"),
+    ("vx", "m/s", "speed of the centre of mass along the track axis"),
+    ("vy", "m/s", "lateral speed, + right"),
+    ("vz", "m/s", "vertical speed, + down"),
+    ("x", "m", "place along the track relative to the vehicle's place"),
+    ("y", "m", "lateral displacement from the track centre line, + right"),
+    ("z", "m", "height: depth below the top of rail, negative above"),
+];
+
+/// Unit and meaning that go with the last part of a channel name.
+#[must_use]
+pub fn describe(name: &str) -> Option<(&'static str, &'static str)> {
+    let last = name.rsplit('.').next()?;
+    PARTS.binary_search_by(|p| p.0.cmp(last)).ok().map(|i| (PARTS[i].1, PARTS[i].2))
+}
+
+/// Where a channel's number comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Source {
+    Time,
+    Place,
+    Speed,
+    HoldForce,
+    Coordinate(usize, usize),
+    TrackMass(usize, usize),
+    Irregularity(usize),
+    SensorPlace(usize, usize),
+    SensorAcceleration(usize, usize),
+    Wheel(usize, usize, WheelQuantity),
+    SumLV(usize),
+    SumY(usize),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum WheelQuantity {
+    Q,
+    Y,
+    LV,
+    Shift,
+    NTread,
+    NFlange,
+    CreepX,
+    CreepY,
+    Spin,
+    ContactY,
+}
+
+/// Every channel of a model with its source, in the order of the columns.
+pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
+    use WheelQuantity as W;
+    let mut plan = vec![
+        ("t".to_owned(), Source::Time),
+        ("s".to_owned(), Source::Place),
+        ("v".to_owned(), Source::Speed),
+    ];
+    if model.speed_hold.is_some() {
+        plan.push(("speed_hold".to_owned(), Source::HoldForce));
+    }
+    let motions = [
+        ("y", coordinate::Y),
+        ("z", coordinate::Z),
+        ("phi", coordinate::PHI),
+        ("theta", coordinate::THETA),
+        ("psi", coordinate::PSI),
+    ];
+    for i in 0..model.count() {
+        for (part, index) in motions {
+            // The turned angle of a wheelset grows for ever and tells nothing.
+            if i < model.bodies.len() || index != coordinate::THETA {
+                plan.push((format!("{}.{part}", model.rigid(i).name), Source::Coordinate(i, index)));
+            }
+        }
+    }
+    for (i, sensor) in model.sensors.iter().enumerate() {
+        for (axis, part) in ["y", "z"].into_iter().enumerate() {
+            plan.push((format!("{}.{part}", sensor.name), Source::SensorPlace(i, axis + 1)));
+        }
+        for (axis, part) in ["ax", "ay", "az"].into_iter().enumerate() {
+            plan.push((format!("{}.{part}", sensor.name), Source::SensorAcceleration(i, axis)));
+        }
+    }
+    if !model.wheelsets.is_empty() {
+        for (i, part) in ["lateral", "vertical", "cross_level", "gauge"].into_iter().enumerate() {
+            plan.push((format!("track.{part}"), Source::Irregularity(i)));
+        }
+    }
+    let profiles = matches!(model.contact, Contact::Profiles { .. });
+    for (w, set) in model.wheelsets.iter().enumerate() {
+        let name = &set.body.name;
+        if model.support.is_some() {
+            for (d, part) in ["track_y", "track_z", "track_phi"].into_iter().enumerate() {
+                plan.push((format!("{name}.{part}"), Source::TrackMass(w, d)));
+            }
+        }
+        plan.push((format!("{name}.sum_LV"), Source::SumLV(w)));
+        plan.push((format!("{name}.sum_Y"), Source::SumY(w)));
+        for (side, label) in ["left", "right"].into_iter().enumerate() {
+            let common = [
+                ("Q", W::Q),
+                ("Y", W::Y),
+                ("LV", W::LV),
+                ("shift", W::Shift),
+                ("creep_x", W::CreepX),
+                ("creep_y", W::CreepY),
+                ("spin", W::Spin),
+            ];
+            let geometry = [("N_tread", W::NTread), ("N_flange", W::NFlange), ("contact_y", W::ContactY)];
+            let parts = common.iter().chain(geometry.iter().filter(|_| profiles));
+            for (part, quantity) in parts {
+                plan.push((format!("{name}.{label}.{part}"), Source::Wheel(w, side, *quantity)));
+            }
+        }
+    }
+    plan
+}
+
+/// The channels of a case.
+///
+/// # Errors
+/// Whatever compiling the case finds.
+pub fn channels(case: &Case) -> Result<Vec<Channel>> {
+    let model = crate::dynamics::compile::model(case)?;
+    Ok(plan(&model)
+        .into_iter()
+        .map(|(name, _)| {
+            let (unit, meaning) = describe(&name).unwrap_or(("1", ""));
+            Channel { name, unit, meaning }
+        })
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_sorted_so_that_the_search_finds_each() {
+        for (name, unit, _) in PARTS {
+            assert_eq!(describe(&format!("a.b.{name}")).map(|d| d.0), Some(unit), "{name}");
+        }
+    }
+}

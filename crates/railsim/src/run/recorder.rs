@@ -1,0 +1,120 @@
+//! Columns of samples, never filtered.
+
+use crate::contact::creep::Creepage;
+use crate::contact::geometry_table::Zone;
+use crate::dynamics::scratch::Wheel;
+use crate::dynamics::{Model, StateMap, VehicleSystem};
+use crate::run::channel::{Source, WheelQuantity, plan};
+
+/// Gathers one row at each output time.
+#[derive(Debug)]
+pub struct Recorder {
+    names: Vec<String>,
+    sources: Vec<Source>,
+    columns: Vec<Vec<f64>>,
+    map: StateMap,
+}
+
+impl Recorder {
+    /// Columns for all channels of a model, with room for `rows`.
+    #[must_use]
+    pub fn new(model: &Model, rows: usize) -> Self {
+        let (names, sources): (Vec<_>, Vec<_>) = plan(model).into_iter().unzip();
+        let columns = names.iter().map(|_| Vec::with_capacity(rows)).collect();
+        Self { names, sources, columns, map: model.map() }
+    }
+
+    /// Takes a row from a system that has just evaluated `dx` at `t`, `x`.
+    pub fn record(&mut self, system: &VehicleSystem<'_>, t: f64, x: &[f64], dx: &[f64]) {
+        for (source, column) in self.sources.iter().zip(&mut self.columns) {
+            column.push(value(*source, system, self.map, t, x, dx));
+        }
+    }
+
+    /// Names and columns, in order.
+    #[must_use]
+    pub fn into_columns(self) -> Vec<(String, Vec<f64>)> {
+        self.names.into_iter().zip(self.columns).collect()
+    }
+}
+
+fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &[f64], dx: &[f64]) -> f64 {
+    let (model, scratch) = (system.model, &system.scratch);
+    let reference = model.reference();
+    match source {
+        Source::Time => t,
+        Source::Place => x[map.q(reference).start] - model.rigid(reference).position.x,
+        Source::Speed => dx[map.q(reference).start],
+        Source::HoldForce => model.speed_hold.map_or(0.0, |hold| {
+            let (s, v) = system.program.at(t);
+            let q = map.q(hold.body).start;
+            hold.stiffness * (s - x[q]) + hold.damping * (v - dx[q])
+        }),
+        Source::Coordinate(body, index) => x[map.q(body).start + index],
+        Source::TrackMass(w, d) => x[map.track_q(w).start + d],
+        Source::Irregularity(i) => {
+            let d = &scratch.deviation[0];
+            [d.y, d.z, d.cross_level, d.gauge][i]
+        }
+        Source::SensorPlace(i, axis) => {
+            let sensor = &model.sensors[i];
+            let k = &scratch.kinematics[sensor.body];
+            let p = k.R_TB * sensor.p_B;
+            x[map.q(sensor.body).start + axis] + p[axis]
+        }
+        Source::SensorAcceleration(i, axis) => {
+            let sensor = &model.sensors[i];
+            let k = &scratch.kinematics[sensor.body];
+            let du = &dx[map.u(sensor.body)];
+            let a_T = crate::math::Vec3::new(du[0], du[1], du[2]) + (k.s_dot * k.frame.k_T).cross(&k.v_T);
+            let mut turn = crate::math::Vec3::new(du[3], du[4], du[5]);
+            if sensor.body >= map.bodies {
+                turn.y = 0.0; // a point on an axle box does not turn with the axle
+            }
+            let w = k.w_axes;
+            let a = k.R_TB.tr_mul(&a_T) + turn.cross(&sensor.p_B) + w.cross(&w.cross(&sensor.p_B));
+            a[axis]
+        }
+        Source::Wheel(w, side, quantity) => wheel_value(&scratch.wheels[w][side], quantity),
+        Source::SumLV(w) => {
+            let [left, right] = &scratch.wheels[w];
+            ratio(left).abs() + ratio(right).abs()
+        }
+        Source::SumY(w) => {
+            let [left, right] = &scratch.wheels[w];
+            right.Y - left.Y
+        }
+    }
+}
+
+/// Y/Q; a lifted wheel carries no lateral force either, so its ratio is 0.
+fn ratio(wheel: &Wheel) -> f64 {
+    if wheel.Q > 0.0 { wheel.Y / wheel.Q } else { 0.0 }
+}
+
+fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {
+    use WheelQuantity as W;
+    let zone = |z: Zone| {
+        wheel
+            .contacts
+            .iter()
+            .flatten()
+            .filter(|c| c.geometry.is_some_and(|g| g.zone == z))
+            .map(|c| c.normal)
+            .sum()
+    };
+    let main = wheel.contacts.iter().flatten().max_by(|a, b| a.normal.total_cmp(&b.normal));
+    let creepage = main.map_or(Creepage { xi: 0.0, eta: 0.0, phi: 0.0 }, |c| c.placed.creepage);
+    match quantity {
+        W::Q => wheel.Q,
+        W::Y => wheel.Y,
+        W::LV => ratio(wheel),
+        W::Shift => wheel.shift,
+        W::NTread => zone(Zone::Tread),
+        W::NFlange => zone(Zone::Flange),
+        W::CreepX => creepage.xi,
+        W::CreepY => creepage.eta,
+        W::Spin => creepage.phi,
+        W::ContactY => main.and_then(|c| c.geometry).map_or(f64::NAN, |g| g.y_wheel),
+    }
+}

@@ -1,0 +1,148 @@
+//! Will this scheme at this step stay bounded? Asked before the first step, of the linearised vehicle.
+//!
+//! One step of a scheme on the linear system `dx/dt = J x` is `x <- R x`. A step is refused when the spectral radius of R
+//! is above both 1 and what the vehicle's own fastest growing mode does in one step: contact forces cannot grow
+//! without bound (wheels lift), so a scheme past its limit would chatter for ever and look like rough track.
+
+use nalgebra::DMatrix;
+
+use crate::dynamics::VehicleSystem;
+use crate::dynamics::linearise::jacobian;
+use crate::dynamics::state::PAIR;
+use crate::error::{Error, Fault, KeyPath, Result};
+use crate::integrator::{Integrator, ROS2_GAMMA, System};
+
+/// Growth per step (beyond the vehicle's own) that counts as unstable: it doubles an error in 700 steps.
+const TOLERATED_GROWTH: f64 = 1e-3;
+const MOST_SWEEPS: usize = 100_000;
+
+/// What the check found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stability {
+    /// Largest magnitude of an eigenvalue, rad/s.
+    pub largest_eigenvalue: f64,
+    /// Largest real part, 1/s: positive where the vehicle itself is unstable.
+    pub fastest_growth: f64,
+    /// Spectral radius of one step.
+    pub radius: f64,
+}
+
+/// Checks the step at the state `x`, on the design track.
+///
+/// # Errors
+/// [`Error::Input`] at `run.integrator.step` with the largest step found stable.
+pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator) -> Result<Stability> {
+    let irregular = std::mem::replace(&mut system.irregular, false);
+    let j = jacobian(system, 0.0, x);
+    let mut dx = vec![0.0; x.len()];
+    system.rhs(0.0, x, &mut dx);
+    let a = stiff_part(system);
+    system.irregular = irregular;
+    let Some(eigenvalues) = eigenvalues(&j) else {
+        return Err(Error::NotConverged {
+            what: "eigenvalues of the vehicle at the start".into(),
+            iterations: MOST_SWEEPS,
+            residual: j.amax(),
+            unit: "rad/s",
+            worst: "the stability check of the step".into(),
+        });
+    };
+    let largest_eigenvalue = eigenvalues.iter().map(|l| l.norm()).fold(0.0, f64::max);
+    let fastest_growth = eigenvalues.iter().map(|l| l.re).fold(f64::MIN, f64::max);
+    let stable = |h: f64| {
+        let radius = radius(&j, &a, integrator, h)?;
+        Some((radius, radius <= (h * fastest_growth.max(0.0)).exp() + TOLERATED_GROWTH))
+    };
+    let h = integrator.step();
+    match stable(h) {
+        Some((radius, true)) => Ok(Stability { largest_eigenvalue, fastest_growth, radius }),
+        found => {
+            let (mut low, mut high) = (0.0, h);
+            for _ in 0..8 {
+                let middle = 0.5 * (low + high);
+                if stable(middle).is_some_and(|s| s.1) { low = middle } else { high = middle }
+            }
+            let growth = found.map_or("without bound".to_owned(), |f| format!("by a factor {:.3}", f.0));
+            Err(Error::input(
+                Fault::new(
+                    KeyPath::of("run.integrator.step"),
+                    format!(
+                        "{h} s with `{}`, in which an error grows {growth} each step (fastest eigenvalue {largest_eigenvalue:.0} rad/s)",
+                        integrator.name()
+                    ),
+                    format!("at most about {low:.2e} s with this scheme"),
+                )
+                .hint("`ros2` treats wheel and track implicitly and takes larger steps"),
+            ))
+        }
+    }
+}
+
+fn eigenvalues(m: &DMatrix<f64>) -> Option<Vec<nalgebra::Complex<f64>>> {
+    if m.iter().any(|v| !v.is_finite()) {
+        return None;
+    }
+    nalgebra::Schur::try_new(m.clone(), f64::EPSILON, MOST_SWEEPS)
+        .map(|s| s.complex_eigenvalues().iter().copied().collect())
+}
+
+/// The part of the system's matrix that the stiff blocks know.
+fn stiff_part(system: &mut VehicleSystem<'_>) -> DMatrix<f64> {
+    let n = system.size();
+    let mut a = DMatrix::zeros(n, n);
+    let (mut k, mut c) = ([0.0; PAIR * PAIR], [0.0; PAIR * PAIR]);
+    for block in 0..system.stiff_blocks().len() {
+        let range = system.stiff_blocks()[block].clone();
+        system.stiff_matrices(block, &mut k, &mut c);
+        for i in 0..PAIR {
+            a[(range.pos.start + i, range.vel.start + i)] = 1.0;
+            for j in 0..PAIR {
+                a[(range.vel.start + i, range.pos.start + j)] = -k[i * PAIR + j];
+                a[(range.vel.start + i, range.vel.start + j)] = -c[i * PAIR + j];
+            }
+        }
+    }
+    a
+}
+
+/// Spectral radius of one step of length `h`.
+fn radius(j: &DMatrix<f64>, a: &DMatrix<f64>, integrator: &Integrator, h: f64) -> Option<f64> {
+    let n = j.nrows();
+    let one = DMatrix::<f64>::identity(n, n);
+    let hj = j * h;
+    let step = match integrator {
+        Integrator::Heun { .. } => &one + &hj + &hj * &hj * 0.5,
+        Integrator::Rk4 { .. } => &one + &hj * (&one + &hj * (&one * 0.5 + &hj * (&one / 6.0 + &hj / 24.0))),
+        Integrator::Ros2 { .. } => {
+            let w = (&one - a * (ROS2_GAMMA * h)).lu().try_inverse()?;
+            let k1 = &w * &hj;
+            let k2 = &w * (&hj * (&one + &k1) - &k1 * 2.0);
+            &one + k1 * 1.5 + k2 * 0.5
+        }
+    };
+    spectral_radius(step)
+}
+
+/// Gelfand's formula, `lim |R^n|^(1/n)`, with n = 2^17 by repeated squaring: a QR iteration stalls on the many defective
+/// eigenvalues at 1 (places along the track, turned angles), a power of the matrix does not care. With norms of 1e6 at most
+/// in between the estimate is high by 1e-4.
+fn spectral_radius(mut power: DMatrix<f64>) -> Option<f64> {
+    const SQUARINGS: i32 = 17;
+    let mut log = 0.0;
+    for k in 0..=SQUARINGS {
+        let norm = power.norm();
+        if !norm.is_finite() {
+            return None;
+        }
+        if norm == 0.0 {
+            return Some(0.0);
+        }
+        // |R^(2^k)| = norm * exp(2^k * log): fold the norm into the logarithm per single power.
+        log += norm.ln() / 2.0_f64.powi(k);
+        power /= norm;
+        if k < SQUARINGS {
+            power = &power * &power;
+        }
+    }
+    Some(log.exp())
+}

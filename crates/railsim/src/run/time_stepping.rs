@@ -1,0 +1,156 @@
+//! A case in time: rolling equilibrium, fixed steps to the end of the track, one row per output step.
+
+use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, equilibrium};
+use crate::error::{Error, Fault, KeyPath, Result};
+use crate::integrator::{StepEnd, Stepper, System};
+use crate::run::recorder::Recorder;
+use crate::run::{divergence, stability};
+use crate::schema::Case;
+
+/// How the caller watches and stops a run.
+pub trait Control: Sync {
+    /// Called now and then with time (s), place (m) and the fraction done.
+    fn progress(&self, t: f64, s: f64, fraction: f64);
+    /// True when the run is to stop; asked after every output step.
+    fn stop(&self) -> bool;
+}
+
+/// Nobody watches, nobody stops.
+#[derive(Debug, Clone, Copy)]
+pub struct Free;
+
+impl Control for Free {
+    fn progress(&self, _t: f64, _s: f64, _fraction: f64) {}
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    /// The leading wheelset reached the end of the track.
+    EndOfTrack,
+    /// The run left what the model describes; the columns go up to there.
+    Diverged(Error),
+}
+
+/// What a run gives.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Names and samples, all of one length.
+    pub columns: Vec<(String, Vec<f64>)>,
+    /// How it ended.
+    pub ended: Ended,
+    /// Counts: steps, right-hand sides, factorisations; the step's stability margin.
+    pub statistics: serde_json::Value,
+}
+
+/// Runs a case of kind `time`.
+///
+/// The first wheelset starts at the beginning of the track, the vehicle behind it on a straight continuation, in rolling
+/// equilibrium on the design track at the speed asked for; the run ends when that wheelset reaches the end of the track.
+///
+/// # Errors
+/// Bad input, no equilibrium, a step beyond the scheme's stability limit, an interruption. A run that diverges on the way
+/// is an [`Outcome`] that says so.
+pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
+    let model = compile::model(case)?;
+    let integrator = &case.run.integrator;
+    let h = integrator.step();
+    let every = (case.run.output_step / h).round().max(1.0) as usize;
+    let map = model.map();
+    let speed = case.run.speed;
+
+    let places: Vec<f64> = (0..model.count()).map(|i| model.rigid(i).position.x).collect();
+    let wheels = if model.wheelsets.is_empty() { &places[..] } else { &places[model.bodies.len()..] };
+    let start = -wheels.iter().fold(f64::MIN, |front, x| front.max(*x));
+    smooth_start(&model, start)?;
+
+    let mut x = equilibrium::solve(&model, start, speed)?;
+    let program = SpeedProgram { s: equilibrium::reference_s(&model, start), speed, acceleration: 0.0 };
+    let mut system = VehicleSystem::new(&model, program);
+    let mut dx = vec![0.0; map.size()];
+    system.rhs(0.0, &x, &mut dx);
+    let limit = stability::check(&mut system, &x, integrator)?;
+    control.progress(0.0, start, 0.0);
+    system.rhs(0.0, &x, &mut dx);
+
+    let distance = case.track.length;
+    let rows = (distance / speed / (h * every as f64)) as usize + 8;
+    let mut recorder = Recorder::new(&model, rows);
+    recorder.record(&system, 0.0, &x, &dx);
+    let mut stepper = Stepper::new(integrator, map.size(), system.stiff_blocks());
+    let leading = (0..map.wheelsets).map(|w| map.q(map.bodies + w).start).collect::<Vec<_>>();
+    let reference = map.q(model.reference()).start;
+
+    let mut step: u64 = 0;
+    let mut output: u64 = 0;
+    let ended = 'run: loop {
+        for _ in 0..every {
+            let end = stepper.step(&mut system, step as f64 * h, &mut x, h);
+            step += 1;
+            if let StepEnd::Singular { block } = end {
+                break 'run Ended::Diverged(Error::Diverged {
+                    t: step as f64 * h,
+                    s: x[reference],
+                    body: model.wheelsets[block].body.name.clone(),
+                    cause: "the implicit step has no solution: a number that is not finite in wheel and track".into(),
+                });
+            }
+            if let Err(error) = divergence::check(&mut system, step as f64 * h, &x) {
+                break 'run Ended::Diverged(error);
+            }
+        }
+        let t = step as f64 * h;
+        system.rhs(t, &x, &mut dx);
+        recorder.record(&system, t, &x, &dx);
+        output += 1;
+        let s = x[reference] - model.rigid(model.reference()).position.x;
+        if leading.iter().any(|i| x[*i] >= case.track.length) {
+            control.progress(t, s, 1.0);
+            break Ended::EndOfTrack;
+        }
+        if output.is_multiple_of(20) {
+            control.progress(t, s, ((s - start) / distance).clamp(0.0, 1.0));
+        }
+        if control.stop() {
+            return Err(Error::Interrupted);
+        }
+    };
+    let counts = stepper.statistics();
+    let statistics = serde_json::json!({
+        "scheme": integrator.name(),
+        "step": h,
+        "steps": step,
+        "right_hand_sides": counts.rhs_evaluations,
+        "factorisations": counts.factorisations,
+        "largest_eigenvalue": limit.largest_eigenvalue,
+        "simulated_s": step as f64 * h,
+        "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,
+    });
+    Ok(Outcome { columns: recorder.into_columns(), ended, statistics })
+}
+
+/// Most irregularity (m) under a wheel at the start: a tenth of what the contact is pressed in by the wheel's load.
+const SMOOTH: f64 = 1e-5;
+
+/// The start is in equilibrium on the design track, so the irregularity must not have begun there: a step of a millimetre
+/// under a wheel is a hammer blow.
+fn smooth_start(model: &Model, start: f64) -> Result<()> {
+    for set in &model.wheelsets {
+        let d = model.deviation.at(start + set.body.position.x);
+        let largest = [d.y, d.z, d.cross_level, d.gauge].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if largest > SMOOTH {
+            return Err(Error::input(
+                Fault::new(
+                    KeyPath::of("track.fade_in"),
+                    format!("an irregularity of {:.2} mm under {} at the start", 1e3 * largest, set.body.name),
+                    "a length > 0 m over which the irregularity grows from nothing",
+                )
+                .hint("`fade_in = 50.0` fades it in over the first 50 m"),
+            ));
+        }
+    }
+    Ok(())
+}

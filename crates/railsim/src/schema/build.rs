@@ -1,0 +1,203 @@
+//! From what was written to a [`Vehicle`]: mirrored connections, names, and the checks that a schema cannot say.
+
+use std::collections::BTreeMap;
+
+use super::check::unknown;
+use super::node::{Node, quoted};
+use super::vehicle::{Body, Connection, Sensor, Vehicle, Wheelset};
+use super::written::{WrittenConnection, WrittenVehicle};
+use crate::connection::ForceLaw;
+use crate::error::{Fault, KeyPath};
+
+/// Turns what was written into a [`Vehicle`].
+pub(super) struct Builder<'a> {
+    root: &'a Node,
+    faults: &'a mut Vec<Fault>,
+}
+
+impl<'a> Builder<'a> {
+    /// `root` is the tree that `written` was read from.
+    pub fn new(root: &'a Node, faults: &'a mut Vec<Fault>) -> Self {
+        Self { root, faults }
+    }
+
+    /// All of it, unless something is wrong.
+    pub fn vehicle(mut self, written: WrittenVehicle, condition: &str) -> Option<Vehicle> {
+        let before = self.faults.len();
+        let bodies: Vec<Body> = written
+            .body
+            .into_iter()
+            .zip(self.nodes("body"))
+            .map(|(b, node)| Body {
+                name: b.name,
+                mass: b.mass,
+                inertia: b.inertia,
+                position: b.position,
+                key: node.at.clone(),
+            })
+            .collect();
+        let wheelsets: Vec<Wheelset> = written
+            .wheelset
+            .into_iter()
+            .zip(self.nodes("wheelset"))
+            .map(|(w, node)| Wheelset {
+                name: w.name,
+                mass: w.mass,
+                inertia: w.inertia,
+                position: [w.position[0], w.position[1], -w.radius],
+                radius: w.radius,
+                tape_half_distance: w.tape_half_distance,
+                key: node.at.clone(),
+            })
+            .collect();
+        if wheelsets.is_empty() {
+            self.fault(Fault::new(self.root.at.key("wheelset"), "no wheelset", "one or more"));
+        }
+        let connections: Vec<Connection> = written
+            .connection
+            .into_iter()
+            .zip(self.nodes("connection"))
+            .flat_map(|(c, node)| self.connection(c, node))
+            .collect();
+        let sensors: Vec<Sensor> = written
+            .sensor
+            .into_iter()
+            .zip(self.nodes("sensor"))
+            .map(|(s, node)| {
+                self.name(&s.name, &node.at);
+                Sensor {
+                    name: format!("{}.{}", s.body, s.name),
+                    body: s.body,
+                    position: s.position,
+                    key: node.at.clone(),
+                }
+            })
+            .collect();
+
+        let named: Vec<(&str, &KeyPath)> = bodies
+            .iter()
+            .map(|b| (b.name.as_str(), &b.key))
+            .chain(wheelsets.iter().map(|w| (w.name.as_str(), &w.key)))
+            .collect();
+        for (name, key) in &named {
+            self.name(name, key);
+        }
+        let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
+        self.unique(named.iter().copied().chain(connections.iter().map(|c| (c.name.as_str(), &c.key))));
+        self.unique(sensors.iter().map(|s| (s.name.as_str(), &s.key)));
+        for c in &connections {
+            for (i, body) in c.between.iter().enumerate() {
+                self.body(body, c.key.key("between").index(i), &names);
+            }
+            if c.between[0] == c.between[1] {
+                let found = format!("{0} and {0}", c.between[0]);
+                self.fault(Fault::new(c.key.key("between"), found, "two different bodies"));
+            }
+        }
+        for s in &sensors {
+            self.body(&s.body, s.key.key("body"), &names);
+        }
+        if let Some(hold) = &written.speed_hold {
+            self.body(&hold.body, self.root.at.key("speed_hold").key("body"), &names);
+        }
+        (self.faults.len() == before).then_some(Vehicle {
+            name: written.name,
+            title: written.title,
+            design_speed: written.design_speed_kmh / 3.6,
+            wheel_profile: written.wheel_profile,
+            track: written.track,
+            condition: condition.to_owned(),
+            design_condition: written.design_condition,
+            bodies,
+            wheelsets,
+            connections,
+            sensors,
+            speed_hold: written.speed_hold,
+            contact: written.contact,
+            outline: written.outline,
+            traction: written.traction,
+            dynamic_brake: written.dynamic_brake,
+        })
+    }
+
+    fn nodes(&self, kind: &str) -> &'a [Node] {
+        let root: &'a Node = self.root;
+        root.get(kind).map_or(&[], Node::items)
+    }
+
+    /// One connection, or the two of a mirrored one.
+    fn connection(&mut self, c: WrittenConnection, node: &Node) -> Vec<Connection> {
+        self.name(&c.name, &node.at);
+        for fault in c.law.faults(&KeyPath::default()) {
+            // The law knows its own keys only; the tree knows where their numbers were written.
+            let place = node.deepest(&fault.key.0);
+            self.faults.push(Fault { key: place.at.clone(), found: place.found(), ..fault });
+        }
+        let points = match (c.position, c.positions) {
+            (Some(point), None) => [point, point],
+            (None, Some(points)) => points,
+            (Some(_), Some(_)) => {
+                let allowed = "position (ends coincide) or positions (two ends), not both";
+                self.fault(Fault::new(node.at.key("positions"), "position and positions", allowed));
+                return Vec::new();
+            }
+            (None, None) => {
+                let allowed = "position = [x, y, z], or positions = [[x, y, z], [x, y, z]], m";
+                self.fault(Fault::new(node.at.key("position"), "nothing", allowed));
+                return Vec::new();
+            }
+        };
+        let one = |name: String, points| Connection {
+            name,
+            between: c.between.clone(),
+            points,
+            law: c.law.clone(),
+            preload: c.carries_weight,
+            key: node.at.clone(),
+        };
+        if !c.mirror {
+            return vec![one(c.name.clone(), points)];
+        }
+        if points[0][1] <= 0.0 {
+            let allowed = "y > 0 m: the right one, from which the left one is made";
+            let key = node.get("position").or(node.get("positions")).map_or(&node.at, |n| &n.at);
+            self.fault(Fault::new(key.clone(), format!("mirror = true with y = {}", points[0][1]), allowed));
+            return Vec::new();
+        }
+        let left = points.map(|[x, y, z]| [x, -y, z]);
+        vec![one(format!("{}_right", c.name), points), one(format!("{}_left", c.name), left)]
+    }
+
+    /// Names become parts of channel names, so they are words without dots.
+    fn name(&mut self, name: &str, at: &KeyPath) {
+        let mut letters = name.chars();
+        let starts = letters.next().is_some_and(|c| c.is_ascii_alphabetic());
+        if !starts || !letters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+            let allowed = "a letter, then letters, digits and _";
+            self.fault(Fault::new(at.key("name"), quoted(name), allowed));
+        }
+    }
+
+    fn unique<'n>(&mut self, named: impl Iterator<Item = (&'n str, &'n KeyPath)>) {
+        let mut first: BTreeMap<&str, &KeyPath> = BTreeMap::new();
+        for (name, key) in named {
+            if let Some(other) = first.get(name) {
+                let found = format!("{}, the name of {other} too", quoted(name));
+                self.faults.push(Fault::new(key.key("name"), found, "each name once"));
+            } else {
+                first.insert(name, key);
+            }
+        }
+    }
+
+    fn body(&mut self, name: &str, at: KeyPath, names: &[&str]) {
+        if !names.contains(&name) {
+            let allowed = format!("a body or wheelset: {}", names.join(", "));
+            self.faults.push(unknown(at, quoted(name), allowed, name, names.iter().copied()));
+        }
+    }
+
+    fn fault(&mut self, fault: Fault) {
+        self.faults.push(fault);
+    }
+}

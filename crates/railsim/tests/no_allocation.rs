@@ -1,0 +1,54 @@
+//! The right-hand side of the whole locomotive allocates nothing, nor does a step.
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System as Heap};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use railsim::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
+use railsim::integrator::{Integrator, Stepper, System};
+use serde_json::json;
+
+struct Counting;
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands every call on to the system's allocator unchanged; counting touches no memory of it.
+#[allow(unsafe_code)] // a counting allocator cannot be written without
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's promise about `layout` is passed on.
+        unsafe { Heap.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: `pointer` came from `Heap.alloc` with this layout.
+        unsafe { Heap.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn right_hand_side_and_step_allocate_nothing() {
+    let mut value = common::coco134();
+    value["track"]["irregularity"] = json!({
+        "kind": "psd", "form": "fra_hamid_yang", "class": 6, "wavelengths": [1.5, 40.0], "seed": 1, "period": 1000.0
+    });
+    let model = compile::model(&common::case(&value)).unwrap();
+    let mut x = equilibrium::solve(&model, 20.0, 35.0).unwrap();
+    let mut dx = vec![0.0; x.len()];
+    let program = SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 35.0, acceleration: 0.0 };
+    let mut system = VehicleSystem::new(&model, program);
+    for integrator in Integrator::examples() {
+        let mut stepper = Stepper::new(&integrator, x.len(), system.stiff_blocks());
+        let before = COUNT.load(Ordering::Relaxed);
+        for i in 0..50 {
+            system.rhs(0.0, &x, &mut dx);
+            let _ = stepper.step(&mut system, 1e-4 * f64::from(i), &mut x, 1e-4);
+        }
+        assert_eq!(COUNT.load(Ordering::Relaxed) - before, 0, "{}", integrator.name());
+    }
+}

@@ -1,0 +1,262 @@
+"""The report folder: one self-contained page, the verdicts as JSON and JUnit XML, every case and its frame.
+
+    out/index.html  verdicts.json  junit.xml  cases/<hash>.json  cases/<hash>.parquet
+
+The page works without a network: plotly.js, style and data are inside. Each file is written under a temporary
+name and then renamed, so that a reader never meets half a file; `verdicts.json` comes last.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from lmap.report import runs, words
+from lmap.report.document import dumps, to_json
+from lmap.report.junit import junit
+from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
+from lmap.report.parquet import write_parquet
+from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
+
+_PLOTLY = "<script>/* plotly.js */</script>"
+"""Where the template wants the library; no text from a file can look so, its `<` being escaped."""
+
+_LONG_LIST = 8
+"""Lists of lists longer than this are folded on the page: profile points."""
+
+
+def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None:
+    """Writes the whole report; the folder is made where it is missing, other files in it stay."""
+    root = Path(folder)
+    cases = root / "cases"
+    cases.mkdir(parents=True, exist_ok=True)
+    for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
+        _write(cases / f"{case.hash}.json", case.case_json.encode())
+        _put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+    _write(root / "index.html", render(acceptance))
+    _write(root / "junit.xml", junit(acceptance).encode())
+    _write(root / "verdicts.json", to_json(acceptance).encode())
+
+
+def render(acceptance: Acceptance) -> bytes:
+    """The page, in UTF-8."""
+    # Only here: what `lmap --help` does not need is not imported for it.
+    from jinja2 import Environment, StrictUndefined
+    from markupsafe import Markup
+
+    templates = resources.files("lmap.report") / "templates"
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
+    page = template.render(
+        page=_page(acceptance),
+        style=Markup((templates / "style.css").read_text(encoding="utf-8")),
+        script=Markup((templates / "page.js").read_text(encoding="utf-8")),
+    )
+    # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
+    before, place, after = page.partition(_PLOTLY)
+    if not place:
+        raise ValueError(f"the page's template has no {_PLOTLY}")
+    return b"".join((before.encode(), b"<script>", _plotly_js(), b"</script>", after.encode()))
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A line of the table of criteria."""
+
+    first: bool
+    name: str
+    case: str
+    value: str
+    limit: str
+    assumed: bool
+    margin: str
+    percent: str
+    published: str
+    verdict: str
+    verdict_class: str
+    signal: str
+    place: str
+    source: str
+
+
+def _page(acceptance: Acceptance) -> dict[str, Any]:
+    title = ", ".join(f"{spec.id} {spec.title}" for spec in acceptance.specs[:3]) or "nothing checked"
+    if len(acceptance.specs) > 3:
+        title += f" and {len(acceptance.specs) - 3} more"
+    return {
+        "title": title,
+        "verdict": words.VERDICTS[acceptance.outcome],
+        "verdict_class": _class(str(acceptance.outcome)),
+        "headline": words.headline(words.all_criteria(acceptance)),
+        "version": acceptance.version,
+        "core": acceptance.core,
+        "specs": [
+            _spec(position, spec, alone=len(acceptance.specs) == 1) for position, spec in enumerate(acceptance.specs)
+        ],
+    }
+
+
+def _spec(position: int, spec: SpecVerdict, *, alone: bool) -> dict[str, Any]:
+    return {
+        "anchor": f"spec-{position}",
+        "id": spec.id,
+        "title": spec.title,
+        "file": spec.file,
+        "procedure": spec.procedure,
+        "vehicle": spec.vehicle,
+        "condition": spec.condition,
+        "verdict": words.VERDICTS[spec.outcome],
+        "verdict_class": _class(str(spec.outcome)),
+        # With one spec the page's head has said it.
+        "headline": "" if alone else f"{_sentence(words.headline(spec.criteria))}.",
+        "criteria": _rows(spec),
+        "messages": words.messages(spec),
+        "assumptions": words.assumptions(spec),
+        "figures": _figures(position, spec),
+        "facts": spec.facts,
+        "overrides": [(key, value) for key, value in spec.overrides.items()],
+        "inputs": spec.inputs,
+        "runs": [_run(case) for case in spec.cases],
+    }
+
+
+def _rows(spec: SpecVerdict) -> list[_Row]:
+    rows: list[_Row] = []
+    previous = None
+    for criterion in sorted(spec.criteria, key=lambda criterion: criterion.index):
+        rows.append(_row(criterion, first=criterion.index != previous))
+        previous = criterion.index
+    return rows
+
+
+def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
+    unit = criterion.unit
+    verdict = words.verdict(criterion)
+    return _Row(
+        first=first,
+        name=criterion.name,
+        case=criterion.case,
+        value=quantity(criterion.value, unit),
+        limit=with_unit(criterion.limit, unit) or "none",
+        assumed=criterion.source == words.ASSUMED,
+        margin=signed(criterion.margin, unit),
+        percent="" if criterion.margin_percent is None else percent(criterion.margin_percent),
+        published=given(criterion.published, unit),
+        verdict=verdict,
+        verdict_class=_class(verdict),
+        signal=criterion.signal or NOTHING,
+        place=_place(criterion.at) if words.placed(criterion) else "",
+        source=criterion.source,
+    )
+
+
+def _place(at: Mapping[str, float] | None) -> str:
+    parts = {"t": "s", "s": "m"}
+    known = [(name, unit) for name, unit in parts.items() if at is not None and name in at]
+    return ", ".join(f"{name} = {number(at[name])} {unit}" for name, unit in known) if at is not None else ""
+
+
+def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
+    from lmap.report.figures import FIGURES
+    from lmap.report.figures.plot import plotly
+
+    shown: list[dict[str, Any]] = []
+    for figure in (figure for draw in FIGURES for figure in draw(spec)):
+        views = [
+            {
+                "case": view.case,
+                "stretch": view.stretch,
+                "caption": view.caption,
+                "message": view.message,
+                **plotly(view),
+            }
+            for view in figure.views
+        ]
+        shown.append(
+            {
+                "id": f"figure-{position}-{len(shown)}",
+                "title": figure.title,
+                "caption": figure.caption,
+                "badge": figure.badge.upper() if figure.badge else None,
+                "badge_class": _class(figure.badge or ""),
+                "cases": list(dict.fromkeys(view.case for view in figure.views)),
+                "stretches": list(dict.fromkeys(view.stretch for view in figure.views)),
+                "json": _script_json(views),
+            }
+        )
+    return shown
+
+
+def _run(case: CaseResult) -> dict[str, Any]:
+    counts = runs.without_clocks(case.statistics)
+    clocks = {name: value for name, value in case.statistics.items() if name not in counts}
+    return {
+        "figures": runs.figures(case),
+        "hash": case.hash,
+        "statistics": _listed(counts),
+        "clock": _listed({**({"wall_s": case.wall_s} if case.wall_s > 0.0 else {}), **clocks}),
+        "json": dumps(_folded(case.case)),
+    }
+
+
+def _listed(values: Mapping[str, Any]) -> str:
+    return ", ".join(
+        f"{name.replace('_', ' ')} {number(value) if isinstance(value, float) else value}"
+        for name, value in values.items()
+    )
+
+
+def _folded(value: Any) -> Any:
+    """The case without its long lists of points: their number stands for them."""
+    if isinstance(value, Mapping):
+        return {key: _folded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        if len(value) > _LONG_LIST and all(isinstance(item, list | tuple | int | float) for item in value):
+            return f"({len(value)} points)"
+        return [_folded(item) for item in value]
+    return value
+
+
+def _script_json(value: Any) -> Any:
+    """JSON that may stand in a script element: nothing in it can end the element or open a comment."""
+    from markupsafe import Markup
+
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    for character in "<>&\u2028\u2029":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return Markup(text)
+
+
+def _plotly_js() -> bytes:
+    """The library as the plotly package brings it, without importing that package's Python."""
+    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
+    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
+
+
+def _class(verdict: str) -> str:
+    """A class of the style sheet: `not-assessed`."""
+    return verdict.lower().replace(" ", "-")
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _write(path: Path, content: bytes) -> None:
+    _put(path, lambda temporary: temporary.write_bytes(content))
+
+
+def _put(path: Path, write: Callable[[Path], object]) -> None:
+    """All of it or nothing, also when the disk is full or the program is stopped."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
