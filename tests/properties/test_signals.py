@@ -22,7 +22,9 @@ def signal(x: npt.NDArray[np.float64], speed: float = 7.3) -> pl.DataFrame:
 
 
 @given(values, st.integers(1, 40))
-def test_sustained_is_the_brute_force_maximum_of_window_minima(x: npt.NDArray[np.float64], steps: int) -> None:
+def test_sustained_is_the_brute_force_maximum_of_window_minima(
+    x: npt.NDArray[np.float64], steps: int
+) -> None:
     ours = Sustained(window_s=steps / RATE).read(signal(x)).value
     assert ours == max(x[i : i + steps + 1].min() for i in range(len(x) - steps))
 

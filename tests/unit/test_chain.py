@@ -53,7 +53,9 @@ def frame(**columns: Any) -> pl.DataFrame:
         ({"max_abs": None, "min": -1.0, "max": 3.0}, -0.5, 0.5),
     ],
 )
-def test_margin_is_the_distance_to_the_nearest_limit(limit: dict[str, Any], value: float, margin: float) -> None:
+def test_margin_is_the_distance_to_the_nearest_limit(
+    limit: dict[str, Any], value: float, margin: float
+) -> None:
     found = criterion(**limit).margin(value)
     assert found is not None
     assert found[0] == pytest.approx(margin)
@@ -68,7 +70,9 @@ def test_the_margin_changes_sign_exactly_at_the_limit(value: float, limit: float
 
 
 @pytest.mark.parametrize(("strict", "passes"), [(False, True), (True, False)])
-@pytest.mark.parametrize("limit", [{"max_abs": 2.0}, {"max_abs": None, "max": 2.0}, {"max_abs": None, "min": 2.0}])
+@pytest.mark.parametrize(
+    "limit", [{"max_abs": 2.0}, {"max_abs": None, "max": 2.0}, {"max_abs": None, "min": 2.0}]
+)
 def test_reaching_the_limit_passes_unless_strict(limit: dict[str, Any], strict: bool, passes: bool) -> None:
     one = criterion(strict=strict, **limit)
     assert one.passes(2.0) is passes
@@ -177,7 +181,12 @@ def test_g_is_the_standard_gravity() -> None:
 
 def test_without_a_limit_the_value_is_shown_and_not_judged() -> None:
     verdict = judge(criterion(max_abs=None), frame(a=[-7.0]), UNITS_OF_FRAME)
-    assert (verdict.outcome, verdict.judged, verdict.value, verdict.margin) == (Outcome.PASS, False, 7.0, None)
+    assert (verdict.outcome, verdict.judged, verdict.value, verdict.margin) == (
+        Outcome.PASS,
+        False,
+        7.0,
+        None,
+    )
     assert verdict.bounds == ()
 
 

@@ -12,7 +12,9 @@ from lmap.errors import JudgementProblem
 from lmap.signals.filters import Lowpass, RemoveMean, Skip
 
 
-def sine(frequency: float, *, rate: float = 200.0, seconds: float = 30.0, amplitude: float = 1.0) -> pl.DataFrame:
+def sine(
+    frequency: float, *, rate: float = 200.0, seconds: float = 30.0, amplitude: float = 1.0
+) -> pl.DataFrame:
     t = np.arange(round(seconds * rate) + 1) / rate
     return pl.DataFrame({"t": t, "s": 10.0 * t, "x": amplitude * np.sin(2.0 * math.pi * frequency * t)})
 
@@ -20,7 +22,7 @@ def sine(frequency: float, *, rate: float = 200.0, seconds: float = 30.0, amplit
 def amplitude_and_phase(signal: pl.DataFrame, frequency: float) -> tuple[float, float]:
     """Of the signal's component at a frequency; exact over whole periods."""
     t, x = signal["t"].to_numpy(), signal["x"].to_numpy()
-    whole = int(math.floor((t[-1] - t[0]) * frequency)) / frequency
+    whole = math.floor((t[-1] - t[0]) * frequency) / frequency
     keep = t < t[0] + whole - 1e-9
     wave = 2.0 * np.mean(x[keep] * np.exp(-2j * math.pi * frequency * t[keep]))
     return abs(wave), math.remainder(np.angle(wave) + math.pi / 2.0, 2.0 * math.pi)
@@ -37,7 +39,9 @@ def test_lowpass_is_3_db_down_at_the_cut_off(zero_phase: bool, rate: float) -> N
 @pytest.mark.parametrize("frequency", [0.5, 2.0, 5.0, 20.0])
 def test_zero_phase_lowpass_follows_the_four_pole_closed_form_without_delay(frequency: float) -> None:
     rate = 1000.0
-    amplitude, phase = amplitude_and_phase(Lowpass(cutoff_hz=10.0).apply(sine(frequency, rate=rate)), frequency)
+    amplitude, phase = amplitude_and_phase(
+        Lowpass(cutoff_hz=10.0).apply(sine(frequency, rate=rate)), frequency
+    )
     # two 2-pole Butterworths with the corner raised: |H| = 1/(1 + (sqrt 2 - 1) w^4), w the warped f / 10 Hz
     w = math.tan(math.pi * frequency / rate) / math.tan(math.pi * 10.0 / rate)
     assert amplitude == pytest.approx(1.0 / (1.0 + (math.sqrt(2.0) - 1.0) * w**4), rel=1e-3)
@@ -56,7 +60,9 @@ def test_lowpass_keeps_a_constant_and_cuts_one_second_at_each_end() -> None:
 
 
 def test_lowpass_refuses_fewer_than_200_samples_per_second() -> None:
-    with pytest.raises(JudgementProblem, match=r"sampled at 100 per second, .* 200 or more: set run.output_step"):
+    with pytest.raises(
+        JudgementProblem, match=r"sampled at 100 per second, .* 200 or more: set run.output_step"
+    ):
         Lowpass(cutoff_hz=10.0).apply(sine(1.0, rate=100.0))
     Lowpass(cutoff_hz=10.0, min_rate_hz=50.0).apply(sine(1.0, rate=100.0))
 

@@ -43,8 +43,10 @@ def edited(old: str, new: str) -> str:
         (
             'vehicle = "toy"',
             'vehicel = "toy"',
-            '4: vehicel: found an unknown key "vehicel"; allowed: condition, criterion, id, procedure, run, set, '
-            'title, track, vehicle (did you mean "vehicle"?)',
+            (
+                '4: vehicel: found an unknown key "vehicel"; allowed: condition, criterion, id, procedure, run, '
+                'set, title, track, vehicle (did you mean "vehicle"?)'
+            ),
         ),
         (
             'speed = "110% design"',
@@ -66,8 +68,10 @@ def edited(old: str, new: str) -> str:
         (
             "max_abs = 0.35",
             "max_asb = 0.35",
-            '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: chain, max, max_abs, min, name, '
-            'published, reason, signal, source, strict, unit (did you mean "max_abs"?)',
+            (
+                '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: chain, max, max_abs, min, '
+                'name, published, reason, signal, source, strict, unit (did you mean "max_abs"?)'
+            ),
         ),
         (
             "window_s = 5.0",
@@ -176,7 +180,9 @@ def test_speeds_resolve_to_metres_per_second(written: dict[str, Any], expected: 
 
 
 def test_what_procedures_do_not_expand_goes_through() -> None:
-    part = RunPart.model_validate({"speed": 1.0, "integrator": {"kind": "heun", "step": 1e-3}, "friction": 0.3})
+    part = RunPart.model_validate(
+        {"speed": 1.0, "integrator": {"kind": "heun", "step": 1e-3}, "friction": 0.3}
+    )
     assert part.rest == {"integrator": {"kind": "heun", "step": 1e-3}, "friction": 0.3}
 
 
