@@ -1,4 +1,5 @@
 //! Contact geometry: closed forms on simple shapes, the shipped pairs, continuity, and the table against a direct search.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use proptest::prelude::*;
 use railsim::KeyPath;
