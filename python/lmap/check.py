@@ -114,15 +114,16 @@ def spec_id(path: Path) -> str:
 def _prepare_all(given: Sequence[str | Path], settings: Mapping[str, Any]) -> list[Prepared]:
     from lmap.prepare import prepare
 
-    paths: dict[Path, None] = {}
+    paths: dict[Path, Path] = {}
     problems: list[Problem] = []
     for one in given:
         try:
-            paths.update(dict.fromkeys(find_specs(one)))
+            for path in find_specs(one):
+                paths.setdefault(path.resolve(), path)
         except InputProblem as error:
             problems += error.problems
     prepared = []
-    for path in paths:
+    for path in paths.values():
         try:
             prepared.append(prepare(path, settings))
         except InputProblem as error:

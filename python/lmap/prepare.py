@@ -169,7 +169,6 @@ def _profiles(
     data: dict[str, Any] = {}
     problems: list[Problem] = []
     places = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
-    railsim = toml.core()
     for case in cases:
         for name, key in case.profile_names.items():
             if name in data:
@@ -182,13 +181,9 @@ def _profiles(
                 continue
             found[name] = (path, text)
             try:
-                points = json.loads(railsim.read_profile(text, name))
-            except railsim.InputError as error:
-                full: KeyPath = ("profiles", name)
-                problems += [
-                    (p if p.key[:2] == full else p.at(prefix=full)).at(file=files.shown(path))
-                    for p in toml.problems_of_core(error)
-                ]
+                points = contact.read_profile(text, name)
+            except InputProblem as error:
+                problems += [problem.at(file=files.shown(path)) for problem in error.problems]
                 continue
             data[name] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
     if problems:
@@ -314,12 +309,9 @@ def vehicle_channels(name: str) -> list[Channel]:
     }
     case = build(label="channels", vehicle=vehicle.data, track=track, run=run)
     places = [vehicle.document.path, *([base.path] if base is not None else [])]
-    railsim = toml.core()
-    data = {
-        profile: {
-            "kind": "wheel" if key[-1] == "wheel_profile" else "rail",
-            **json.loads(railsim.read_profile(files.read_text(_first(profile, places), "profile"), profile)),
-        }
-        for profile, key in case.profile_names.items()
-    }
+    data = {}
+    for profile, key in case.profile_names.items():
+        path = _first(profile, places)
+        points = contact.read_profile(files.read_text(path, "profile"), profile)
+        data[profile] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
     return channels(case.with_profiles(data))

@@ -128,7 +128,9 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
 
 
 def read_profile(text: str, name: str) -> str:
-    lines = [line for line in text.splitlines() if line and not line.startswith("#") and not line[0].isalpha()]
+    lines = [
+        line for line in text.splitlines() if line and not line.startswith("#") and not line[0].isalpha()
+    ]
     points = [[float(word) for word in line.split(",")] for line in lines]
     if len(points) < 8:
         raise InputError([_fault(["profiles", name, "points"], f"{len(points)} points", "8 or more")])

@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 import json
 import math
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 from typing import Any
-from xml.etree import ElementTree
 
 import polars as pl
 import pytest
@@ -67,9 +67,7 @@ def test_json_has_no_nan_and_no_clock() -> None:
 def test_json_depends_on_nothing_that_a_clock_gave() -> None:
     acceptance = sample.passing()
     spec = acceptance.specs[0]
-    cases = tuple(
-        replace(case, wall_s=9.9, statistics={**case.statistics, "wall_s": 9.9}) for case in spec.cases
-    )
+    cases = tuple(replace(case, wall_s=9.9, statistics={**case.statistics, "wall_s": 9.9}) for case in spec.cases)
     slower = replace(acceptance, wall_s=99.0, specs=(replace(spec, cases=cases),))
     assert to_json(slower) == to_json(acceptance)
     assert junit(slower) == junit(acceptance)
@@ -89,7 +87,7 @@ def test_junit_counts_follow_the_outcomes(
     acceptance: Acceptance, outcome: Outcome, counts: tuple[str, str, str, str]
 ) -> None:
     assert acceptance.outcome is outcome
-    root = ElementTree.fromstring(junit(acceptance))
+    root = ET.fromstring(junit(acceptance))
     (suite,) = root.findall("testsuite")
     for element in (root, suite):
         assert tuple(element.get(key) for key in ("tests", "failures", "errors", "skipped")) == counts
@@ -100,7 +98,7 @@ def test_junit_counts_follow_the_outcomes(
 
 
 def test_junit_failure_tells_value_limit_and_margin() -> None:
-    root = ElementTree.fromstring(junit(sample.failing()))
+    root = ET.fromstring(junit(sample.failing()))
     message = next(root.iter("failure")).get("message") or ""
     criterion = first(sample.failing())
     assert numbers.quantity(criterion.value, "g") in message
@@ -110,13 +108,13 @@ def test_junit_failure_tells_value_limit_and_margin() -> None:
 
 def test_junit_survives_characters_that_xml_cannot_carry() -> None:
     acceptance = with_first(sample.diverged(), message='<a> & "b" \x00\x1b[31m')
-    root = ElementTree.fromstring(junit(acceptance))
+    root = ET.fromstring(junit(acceptance))
     assert '<a> & "b"' in (next(root.iter("error")).get("message") or "")
 
 
 def test_junit_of_a_spec_without_criteria_is_an_error() -> None:
     spec = replace(sample.passing().specs[0], criteria=(), outcome=Outcome.ERROR)
-    assert ElementTree.fromstring(junit(sample.acceptance(spec))).get("errors") == "1"
+    assert ET.fromstring(junit(sample.acceptance(spec))).get("errors") == "1"
 
 
 @pytest.mark.parametrize("width", [80, 100, 200])
@@ -155,9 +153,7 @@ def test_terminal_of_a_diverged_run_says_why_once() -> None:
 
 
 def test_terminal_of_a_fail_and_of_what_waits() -> None:
-    assert "FAIL 2C.1 Hunting: 1 of 2 pass, 1 fail; smallest margin -" in " ".join(
-        printed(sample.failing()).split()
-    )
+    assert "FAIL 2C.1 Hunting: 1 of 2 pass, 1 fail; smallest margin -" in " ".join(printed(sample.failing()).split())
     waiting = printed(sample.waiting(Outcome.NOT_ASSESSED), 100)
     assert "NOT ASSESSED" in waiting
     assert "waits for a person's sign-off" in waiting

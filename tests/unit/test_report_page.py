@@ -5,12 +5,12 @@ from __future__ import annotations
 import base64
 import json
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 import polars as pl
@@ -60,7 +60,7 @@ class Page(HTMLParser):
 
 def page(acceptance: Acceptance) -> Page:
     """Rendered and parsed; every tag is closed."""
-    parsed = Page(render(acceptance))
+    parsed = Page(render(acceptance).decode())
     assert parsed.open == []
     return parsed
 
@@ -201,15 +201,24 @@ def test_criterion_figure_shades_a_window_of_distance() -> None:
 
 def test_extreme_below_zero_is_marked_below_zero() -> None:
     case = sample.case("a")
-    table = case.frame.with_columns(
-        pl.when(pl.col("t") == 5.0).then(-0.02).otherwise(pl.col("ws2.y")).alias("ws2.y")
-    )
+    table = case.frame.with_columns(pl.when(pl.col("t") == 5.0).then(-0.02).otherwise(pl.col("ws2.y")).alias("ws2.y"))
     spec = sample.judged(replace(case, frame=table, quantities=table), criteria=(sample.SHIFT,))
     mark = figures(spec)[0].views[0].mark
     assert mark is not None
     assert mark.t == 5.0
     assert mark.value == pytest.approx(-20.0)
     assert mark.text[0] == "20.00 mm"
+
+
+def test_statistic_of_the_whole_run_is_a_level_without_a_place() -> None:
+    rms = sample.SHIFT.model_copy(update={"chain": [{"rms": {}}]})
+    spec = sample.judged(sample.case("a"), criteria=(rms,))
+    (view,) = figures(spec)[0].views
+    assert view.mark is None
+    assert view.window is None
+    assert view.curves[-1].role == "statistic"
+    assert set(view.curves[-1].values) == {spec.criteria[0].value}
+    assert "t = " not in page(sample.acceptance(spec)).text
 
 
 def test_criterion_without_limit_has_no_limit_line() -> None:
@@ -243,17 +252,13 @@ def test_registry_of_figures_is_sorted() -> None:
     assert modules == sorted(modules)
     folder = Path(__file__).parents[2] / "python" / "lmap" / "report" / "figures"
     kept = {"__init__", "channels", "envelope", "plot"}
-    assert {module.rsplit(".", 1)[1] for module in modules} == {
-        path.stem for path in folder.glob("*.py")
-    } - kept
+    assert {module.rsplit(".", 1)[1] for module in modules} == {path.stem for path in folder.glob("*.py")} - kept
 
 
 def test_track_irregularity_is_drawn_where_the_frame_has_it() -> None:
     case = sample.case("a")
     table = case.frame.with_columns((0.001 * pl.col("t").sin()).alias("track.cross_level"))
-    spec = sample.judged(
-        replace(case, frame=table, quantities=table, units={**case.units, "track.cross_level": "m"})
-    )
+    spec = sample.judged(replace(case, frame=table, quantities=table, units={**case.units, "track.cross_level": "m"}))
     (figure,) = [figure for figure in figures(spec) if figure.title == "Track irregularity"]
     assert figure.views[0].rows == ("cross level (mm)",)
 
@@ -293,11 +298,7 @@ def test_packed_curves_are_the_samples_in_single_precision() -> None:
 
 def folder_of(acceptance: Acceptance, folder: Path) -> dict[str, bytes]:
     write_report(acceptance, folder)
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def test_folder_holds_everything_and_no_leftovers(tmp_path: Path) -> None:
@@ -308,7 +309,7 @@ def test_folder_holds_everything_and_no_leftovers(tmp_path: Path) -> None:
     expected |= {f"cases/{one}.{ending}" for one in hashes for ending in ("json", "parquet")}
     assert {name.replace("\\", "/") for name in written} == expected
     assert json.loads(written["verdicts.json"])["verdict"] == "pass"
-    assert ElementTree.fromstring(written["junit.xml"]).get("tests") == "6"
+    assert ET.fromstring(written["junit.xml"]).get("tests") == "6"
     case: CaseResult = acceptance.specs[0].cases[0]
     assert (tmp_path / "new" / "out" / "cases" / f"{case.hash}.json").read_text() == case.case_json
 

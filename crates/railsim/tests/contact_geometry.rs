@@ -30,6 +30,12 @@ fn as60() -> Profile {
 static ANZR1: LazyLock<GeometryTable> = LazyLock::new(|| {
     GeometryTable::build(&shipped("anzr1", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
 });
+static WORN_2: LazyLock<GeometryTable> = LazyLock::new(|| {
+    GeometryTable::build(&shipped("anzr1_worn_2", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
+});
+static WORN_HIGH: LazyLock<GeometryTable> = LazyLock::new(|| {
+    GeometryTable::build(&shipped("anzr1_worn_high", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
+});
 static S1002: LazyLock<GeometryTable> = LazyLock::new(|| {
     GeometryTable::build(&shipped("s1002", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
 });
@@ -83,15 +89,18 @@ fn cone_on_round_rail_closed_form() {
 /// data/README.md and CONTACT.md 5.4: conicity 0.0529 at 1-6 mm, flange play +-6.4 mm.
 #[test]
 fn anzr1_on_as60_conicity_and_flange_play() {
+    // the radius of coco134 and the gauge at 14 mm are what the published figures belong to
+    let placement = Placement { wheel_radius: 0.5335, gauge_point_depth: 0.014, ..PLACEMENT };
+    let pair = GeometryTable::build(&shipped("anzr1", ProfileKind::Wheel), &as60(), &placement).unwrap();
     for millimetres in 1..=6 {
-        let conicity = ANZR1.equivalent_conicity(1e-3 * f64::from(millimetres)).unwrap();
+        let conicity = pair.equivalent_conicity(1e-3 * f64::from(millimetres)).unwrap();
         println!("anzr1/as60 equivalent conicity at {millimetres} mm: {conicity:.4} (0.0529)");
-        assert!((conicity - 0.0529).abs() < 0.0005);
+        assert!((conicity - 0.0529).abs() < 0.0002);
     }
     // play: the shift of the wheelset at which the flange gap equals the tread gap
     let difference = |y: f64| {
-        let roll = ANZR1.touching_roll(y).unwrap();
-        let gap = ANZR1.gap(y - roll * PLACEMENT.wheel_radius, roll).unwrap();
+        let roll = pair.touching_roll(y).unwrap();
+        let gap = pair.gap(y - roll * placement.wheel_radius, roll).unwrap();
         gap[1] - gap[0]
     };
     let (mut low, mut high) = (0.0, 0.012);
@@ -118,17 +127,27 @@ fn direct_gap(wheel: &Profile, table: &GeometryTable, dy: f64, roll: f64) -> f64
         .fold(f64::INFINITY, f64::min)
 }
 
+/// The smallest gap is a minimum over places of contact, so it has creases where the contact jumps from one place to another;
+/// bilinear interpolation rounds a crease off over one cell, by up to (distance of the places) * 2 mrad/4. S1002 on 1:20, with three
+/// places 33 mm apart within the tread, is the worst; the pairs of the locomotive have no such jump within a zone.
 #[test]
 fn table_against_direct_search() {
-    for (name, table) in [("anzr1", &*ANZR1), ("s1002", &*S1002)] {
+    for (name, table, bound) in [
+        ("anzr1", &*ANZR1, 1e-6),
+        ("anzr1_worn_2", &*WORN_2, 1e-6),
+        ("anzr1_worn_high", &*WORN_HIGH, 1e-5),
+        ("s1002", &*S1002, 3e-5),
+    ] {
         let wheel = shipped(name, ProfileKind::Wheel);
         let mut worst = (0.0_f64, 0.0, 0.0);
+        let mut all = Vec::new();
         for i in 0..30 {
             for j in 0..5 {
                 let dy = -0.0093 + 0.000_637 * f64::from(i);
                 let roll = -0.0071 + 0.0037 * f64::from(j);
                 let gap = table.gap(dy, roll).unwrap();
                 let error = gap[0].min(gap[1]) - direct_gap(&wheel, table, dy, roll);
+                all.push(error.abs());
                 if error.abs() > worst.0.abs() {
                     worst = (error, dy, roll);
                 }
@@ -140,7 +159,9 @@ fn table_against_direct_search() {
             1e3 * worst.1,
             1e3 * worst.2
         );
-        assert!(worst.0.abs() < 5e-6);
+        assert!(worst.0.abs() < bound, "{name}");
+        all.sort_by(f64::total_cmp);
+        println!("    median {:.3} um, 95 % {:.3} um", 1e6 * all[75], 1e6 * all[142]);
     }
 }
 
@@ -148,20 +169,20 @@ fn table_against_direct_search() {
 #[test]
 fn shares_of_one_contact_add_up_to_one() {
     let mut worst = 0.0_f64;
-    for table in [&*ANZR1, &*S1002] {
+    for table in [&*ANZR1, &*WORN_2, &*WORN_HIGH, &*S1002] {
         for i in 0..=200 {
             let dy = -0.01 + 0.0001 * f64::from(i);
-            let found = one(table, dy, 0.0, 1e-6);
-            // contacts closer than 3 mm on the wheel are one contact
+            let found = one(table, dy, 0.0, 1e-5);
+            // contacts closer than 1.5 mm on the wheel are one contact
             let total: f64 = found.iter().map(|c| c.share).sum();
-            let separate = found.len() == 2 && (found[0].y_wheel - found[1].y_wheel).abs() > 3e-3;
+            let separate = found.len() == 2 && (found[0].y_wheel - found[1].y_wheel).abs() > 1.5e-3;
             if !separate {
                 worst = worst.max((total - 1.0).abs());
             }
         }
     }
     println!("largest |sum of shares - 1|: {worst:.3}");
-    assert!(worst < 0.15);
+    assert!(worst < 0.05);
 }
 
 #[test]

@@ -55,13 +55,12 @@ def main() -> NoReturn:
     """Entry point of the `lmap` script."""
     try:
         code = app(standalone_mode=False)
-    except KeyboardInterrupt:
-        _say("stopped")
-        _leave(EXIT_INTERRUPTED)
+        if code == EXIT_INTERRUPTED:
+            raise KeyboardInterrupt  # typer turns it into a code
     except LmapError as error:
         _say(str(error))
         _leave(error.exit_code)
-    except typer.Abort:
+    except (KeyboardInterrupt, typer.Abort):
         _say("stopped")
         _leave(EXIT_INTERRUPTED)
     except BrokenPipeError:

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,11 @@ from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
-from lmap.report.parquet import to_parquet
+from lmap.report.parquet import write_parquet
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
+
+_PLOTLY = "<script>/* plotly.js */</script>"
+"""Where the template wants the library; no text from a file can look so, its `<` being escaped."""
 
 _LONG_LIST = 8
 """Lists of lists longer than this are folded on the page: profile points."""
@@ -34,29 +38,31 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
     cases.mkdir(parents=True, exist_ok=True)
     for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
         _write(cases / f"{case.hash}.json", case.case_json.encode())
-        _write(cases / f"{case.hash}.parquet", to_parquet(case))
-    _write(root / "index.html", render(acceptance).encode())
+        _put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+    _write(root / "index.html", render(acceptance))
     _write(root / "junit.xml", junit(acceptance).encode())
     _write(root / "verdicts.json", to_json(acceptance).encode())
 
 
-def render(acceptance: Acceptance) -> str:
-    """The page."""
+def render(acceptance: Acceptance) -> bytes:
+    """The page, in UTF-8."""
     # Only here: what `lmap --help` does not need is not imported for it.
     from jinja2 import Environment, StrictUndefined
     from markupsafe import Markup
 
     templates = resources.files("lmap.report") / "templates"
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
-    return template.render(
+    page = template.render(
         page=_page(acceptance),
         style=Markup((templates / "style.css").read_text(encoding="utf-8")),
         script=Markup((templates / "page.js").read_text(encoding="utf-8")),
-        plotly_js=Markup(_plotly_js()),
     )
+    # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
+    before, place, after = page.partition(_PLOTLY)
+    if not place:
+        raise ValueError(f"the page's template has no {_PLOTLY}")
+    return b"".join((before.encode(), b"<script>", _plotly_js(), b"</script>", after.encode()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +97,7 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "version": acceptance.version,
         "core": acceptance.core,
         "specs": [
-            _spec(position, spec, alone=len(acceptance.specs) == 1)
-            for position, spec in enumerate(acceptance.specs)
+            _spec(position, spec, alone=len(acceptance.specs) == 1) for position, spec in enumerate(acceptance.specs)
         ],
     }
 
@@ -146,7 +151,7 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
         verdict=verdict,
         verdict_class=_class(verdict),
         signal=criterion.signal or NOTHING,
-        place=_place(criterion.at),
+        place=_place(criterion.at) if words.placed(criterion) else "",
         source=criterion.source,
     )
 
@@ -228,10 +233,10 @@ def _script_json(value: Any) -> Any:
     return Markup(text)
 
 
-def _plotly_js() -> str:
+def _plotly_js() -> bytes:
     """The library as the plotly package brings it, without importing that package's Python."""
-    text = (resources.files("plotly") / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
-    return text.replace("</script", "<\\/script")
+    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
+    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
 
 
 def _class(verdict: str) -> str:
@@ -244,10 +249,14 @@ def _sentence(text: str) -> str:
 
 
 def _write(path: Path, content: bytes) -> None:
+    _put(path, lambda temporary: temporary.write_bytes(content))
+
+
+def _put(path: Path, write: Callable[[Path], object]) -> None:
     """All of it or nothing, also when the disk is full or the program is stopped."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        temporary.write_bytes(content)
+        write(temporary)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)

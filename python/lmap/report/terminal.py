@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lmap.report import runs, words
-from lmap.report.numbers import given, number, percent, quantity, signed
+from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed
 from lmap.verdict import Acceptance, CriterionVerdict, Outcome, SpecVerdict
 
 _STYLES = {
@@ -111,9 +111,7 @@ def _facts(spec: SpecVerdict) -> Table:
     for title in ("shown beside", "case", "value", "paper"):
         grid.add_column(title, overflow="fold")
     for fact in spec.facts:
-        grid.add_row(
-            Text(fact.name), Text(fact.case or "all"), Text(fact.value), Text(fact.published or number(None))
-        )
+        grid.add_row(Text(fact.name), Text(fact.case or "all"), Text(fact.value), Text(fact.published or number(None)))
     return grid
 
 
@@ -128,8 +126,8 @@ def _runs(spec: SpecVerdict) -> Table:
             run.distance,
             run.simulated,
             run.wall,
-            f"{run.real_time_factor} x",
-            f"{run.scheme} {run.step}",
+            run.real_time_factor if run.real_time_factor == NOTHING else f"{run.real_time_factor} x",
+            run.scheme if run.step == NOTHING else f"{run.scheme} {run.step}",
             run.ended,
         )
         grid.add_row(*(Text(cell) for cell in cells))

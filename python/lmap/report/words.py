@@ -20,6 +20,15 @@ VERDICTS = {
 }
 
 
+WHOLE_RUN = frozenset({"mean", "percentile", "rms"})
+"""Statistics of a run as a whole: their value has no place in it."""
+
+
+def placed(criterion: CriterionVerdict) -> bool:
+    """Whether the value belongs to a place in the run."""
+    return criterion.at is not None and not (criterion.chain and WHOLE_RUN & set(criterion.chain[-1]))
+
+
 def verdict(criterion: CriterionVerdict) -> str:
     """Its outcome; `shown` where there is no limit to judge by."""
     if criterion.outcome is Outcome.PASS and not criterion.judged:

@@ -41,7 +41,7 @@ class AveragePeak(Statistic):
         peaks = half_wave_peaks(signal)
         if peaks.is_empty():
             if signal.select((pl.col("x") == pl.col("x").first()).all()).item():
-                return Reading(0.0, (begin + end) / 2.0, float(np.mean(signal.get_column("s"))))
+                return Reading(0.0, (begin + end) / 2.0, float(signal.get_column("s").to_numpy().mean()))
             raise JudgementProblem("the record has no complete half-wave, so no peak")
         t, height = peaks.get_column("t").to_numpy(), peaks.get_column("x").to_numpy()
         # The set of peaks in [a, a + w] changes only where a passes a peak or a peak less w: these and the

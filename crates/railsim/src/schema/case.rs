@@ -16,7 +16,7 @@ use super::vehicle::Vehicle;
 use crate::contact::creep::CreepLaw;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::Integrator;
-use crate::track::irregularity::Irregularity;
+use crate::track::irregularity::{DeviationField, Irregularity};
 use crate::track::{Layout, Segment};
 
 /// The version of the case format that this code reads.
@@ -189,6 +189,9 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
     for node in at("track", "irregularity").into_iter().flat_map(Node::items) {
         leaf(Some(node), Irregularity::faults, faults);
     }
+    if let Some(node) = root.get("track") {
+        fade(node, faults);
+    }
     if let Some(node) = at("track", "layout")
         && let Some(length) = at("track", "length").and_then(Node::number).filter(|length| *length > 0.0)
         && let Some(segments) = check::read::<Vec<Segment>>(node, &mut Vec::new())
@@ -230,6 +233,17 @@ fn steps(step: &Node, output: &Node, faults: &mut Vec<Fault>) {
     if whole < 1.0 || (ratio - whole).abs() > 1e-9 * whole {
         let allowed = format!("a whole multiple of run.integrator.step = {h} s");
         faults.push(Fault::new(output.at.clone(), output.found(), allowed));
+    }
+}
+
+/// How the irregularity fades in; the field itself is made when the case is compiled.
+fn fade(track: &Node, faults: &mut Vec<Fault>) {
+    let length = |key: &str| track.get(key).map_or(Some(0.0), Node::number).filter(|x| *x >= 0.0);
+    if let (Some(start), Some(over)) = (length("fade_start"), length("fade_in"))
+        && let Err(Error::Input(own)) =
+            DeviationField::new(&[], 0.0, start, over, &track.at.key("irregularity"))
+    {
+        faults.extend(own);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Named parameters: `[parameters.<group>]`, overridden from outside (`set`) and by `[condition.<name>]`, referred to
 //! as `"$group.key"` or `"-$group.key"` wherever a number stands.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Number;
 
@@ -94,14 +94,22 @@ pub(super) fn override_with(parameters: &mut Named, other: &Named, faults: &mut 
     }
 }
 
-/// The fault for a name that is no parameter.
-pub(super) fn unknown_parameter<V>(at: KeyPath, name: &str, known: &BTreeMap<String, V>) -> Fault {
+/// The fault for a name that is no parameter: shows the names of its group, or else the groups.
+pub(super) fn unknown_parameter(at: KeyPath, name: &str, known: &Named) -> Fault {
+    let group = |name: &str| name.rsplit_once('.').map(|(group, _)| group.to_owned());
+    let own = group(name);
+    let beside: Vec<&str> =
+        known.keys().map(String::as_str).filter(|other| own.is_some() && group(other) == own).collect();
     let allowed = if known.is_empty() {
         "a named parameter of the vehicle, which has none".to_owned()
+    } else if beside.is_empty() {
+        let groups: BTreeSet<String> = known.keys().filter_map(|name| group(name)).collect();
+        format!("a named parameter, in {}", groups.into_iter().collect::<Vec<_>>().join(", "))
     } else {
-        "a named parameter of the vehicle".to_owned()
+        format!("a named parameter: {}", beside.join(", "))
     };
-    unknown(at, format!("the unknown name {name}"), allowed, name, known.keys().map(String::as_str))
+    let found = format!("the unknown name {name}");
+    unknown(at, found, allowed, name, known.keys().map(String::as_str))
 }
 
 /// Name and sign, if the text is a reference.

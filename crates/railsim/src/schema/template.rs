@@ -21,6 +21,9 @@ const POSITIONS: [&str; 2] = ["position", "positions"];
 /// No real vehicle comes near it; templates that use templates grow as a power.
 const MOST_ELEMENTS: usize = 10_000;
 
+/// Templates within templates; each level costs stack.
+const DEEPEST: usize = 32;
+
 /// One copy of a template.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -160,6 +163,11 @@ impl Expansion<'_> {
         if within.iter().any(|outer| outer == name) {
             let chain = within.iter().map(String::as_str).chain([name]).collect::<Vec<_>>().join(" -> ");
             faults.push(Fault::new(at, format!("a template that uses itself: {chain}"), "no such ring"));
+            return;
+        }
+        if within.len() == DEEPEST {
+            let found = format!("{} templates within each other", DEEPEST + 1);
+            faults.push(Fault::new(at, found, format!("{DEEPEST} at most")));
             return;
         }
         let needed = placeholders(template);

@@ -11,6 +11,7 @@ import polars as pl
 
 from lmap.criteria import Stage, trace
 from lmap.errors import JudgementProblem
+from lmap.report import words
 from lmap.report.figures.envelope import Array
 from lmap.report.figures.plot import FAINT_BUCKETS, Curve, Figure, Mark, View, samples, shown, time
 from lmap.report.numbers import given, number, quantity, with_unit
@@ -52,9 +53,7 @@ def draw(spec: SpecVerdict) -> list[Figure]:
 def chain_text(verdict: CriterionVerdict) -> str:
     """The chain as a line: signal, links with their parameters, limit."""
     parts = [_link_text(link) for link in verdict.chain]
-    parts.append(
-        f"limit {with_unit(verdict.limit, verdict.unit)}" if verdict.limit else "no limit: shown, not judged"
-    )
+    parts.append(f"limit {with_unit(verdict.limit, verdict.unit)}" if verdict.limit else "no limit: shown, not judged")
     return " → ".join(["signal", *parts])
 
 
@@ -80,9 +79,7 @@ def _views(verdict: CriterionVerdict, case: CaseResult | None) -> list[View]:
     if case is None:
         if verdict.message is None and not verdict.signals:
             return []
-        return [
-            View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")
-        ]
+        return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")]
     if not verdict.signals:
         return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "no signal is read")]
     try:
@@ -97,6 +94,8 @@ def _judged(verdict: CriterionVerdict, case: CaseResult) -> list[View]:
     stages = _stages(verdict, case, worst)
     # The worst signal in front (drawn last), what it is made from in grey behind everything.
     front = _curves(worst, stages, verdict.unit, colour=1)
+    if verdict.value is not None and not words.placed(verdict):
+        front.append(_level(verdict, stages))
     behind = []
     for position, name in enumerate(others):
         last = _filtered(_stages(verdict, case, name))
@@ -115,7 +114,7 @@ def _judged(verdict: CriterionVerdict, case: CaseResult) -> list[View]:
         )
     limits = _limits(verdict)
     mark = _mark(verdict, stages)
-    window = _window(verdict, case)
+    window = _window(verdict, case) if mark is not None else None
     rows = (_axis(verdict),)
     raw = [curve for curve in front if curve.role == "raw"]
     rest = [curve for curve in front if curve.role != "raw"]
@@ -154,9 +153,7 @@ def _curves(signal: str, stages: Sequence[Stage], unit: str, colour: int) -> lis
     curves = []
     if filtered is not stages[0]:
         curves.append(
-            Curve(
-                f"{signal}, unfiltered", stages[0].t, stages[0].values, "raw", unit, width=0.7, dash="solid"
-            )
+            Curve(f"{signal}, unfiltered", stages[0].t, stages[0].values, "raw", unit, width=0.7, dash="solid")
         )
     label = f"{signal}, {filtered.name}" if filtered is not stages[0] else signal
     curves.append(Curve(label, filtered.t, filtered.values, str(colour), unit, width=1.5))
@@ -164,6 +161,14 @@ def _curves(signal: str, stages: Sequence[Stage], unit: str, colour: int) -> lis
     if last is not filtered:
         curves.append(Curve(last.name.replace("_", " "), last.t, last.values, "statistic", unit, width=1.3))
     return curves
+
+
+def _level(verdict: CriterionVerdict, stages: Sequence[Stage]) -> Curve:
+    """The value of a statistic of the whole run: a line along it."""
+    ends = stages[0].t[[0, -1]]
+    name = str(next(iter(verdict.chain[-1])))
+    values = np.full(2, verdict.value, dtype=np.float64)
+    return Curve(f"{name} {quantity(verdict.value, verdict.unit)}", ends, values, "statistic", verdict.unit, width=1.3)
 
 
 def _filtered(stages: Sequence[Stage]) -> Stage:
@@ -220,7 +225,7 @@ def _limits(verdict: CriterionVerdict) -> tuple[tuple[float, str], ...]:
 
 
 def _mark(verdict: CriterionVerdict, stages: Sequence[Stage]) -> Mark | None:
-    if verdict.at is None or verdict.value is None or "t" not in verdict.at:
+    if verdict.at is None or verdict.value is None or "t" not in verdict.at or not words.placed(verdict):
         return None
     t, value = verdict.at["t"], verdict.value
     text = [quantity(value, verdict.unit)]

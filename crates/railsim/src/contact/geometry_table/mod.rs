@@ -6,10 +6,10 @@
 //!
 //! **Zones.** Up to two simultaneous contacts, one per zone of the *wheel*: tread and flange. A smooth weight chi over the wheel's
 //! own contact angle divides them, 1 on the tread below [`BLEND_FROM`], 0 on the flange above [`BLEND_TO`] and from there on
-//! to the flange tip. The bounds lie where rigid contact does not dwell: it jumps from 0.05 rad (anzr1 on as60), from 0.45 rad (S1002 on
-//! as60), from 0.42 rad (S1002 on UIC60, Manchester contact benchmark) to more than 1.1 rad on the flange. Worn pairs that conform in the
-//! root cross the blend; there both zones see the same contact and share it, `share` adding up to about 1. Two separate
-//! contacts have share 1 each.
+//! to the flange tip. The bounds lie about where the crown of a rail (R 300, R 80) ends and its gauge corner (R 13)
+//! begins: 0.22 rad on as60, 0.24 rad on UIC 60, plus or minus the inclination. Tread contacts stay below 0.15 rad (0.144 at most on S1002, 0.09 on
+//! the worn anzr1), flange and root contacts lie above 0.35 rad, and rigid contact jumps from the one to the other. Where a pair leads one contact
+//! through the blend, both zones see it and share it, `share` adding up to about 1; two separate contacts have share 1 each.
 //!
 //! **Quasi-elastic averages.** Rigid contact points jump from one place of nearly conforming profiles to another; the pressed patch
 //! does not. Each zone's position, angle and curvature are averages over the zone with the weight
@@ -31,9 +31,9 @@ mod build;
 use crate::contact::profile::Profile;
 
 /// Contact angle of the wheel up to which it is all tread, rad.
-pub const BLEND_FROM: f64 = 0.5;
+pub const BLEND_FROM: f64 = 0.15;
 /// Contact angle from which on it is all flange, rad.
-pub const BLEND_TO: f64 = 0.9;
+pub const BLEND_TO: f64 = 0.35;
 /// Normal penetration of the quasi-elastic average, m.
 pub const PENETRATION: f64 = 0.03e-3;
 /// Bound of the relative lateral curvature, 1/m (a radius of 2 m).

@@ -1,0 +1,210 @@
+"""The command line on the stand-in core: what goes where, and exit codes."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import polars as pl
+import pytest
+
+import lmap.prepare
+from lmap.cli import app
+
+FAKE = Path(__file__).parent / "fake_cli.py"
+
+
+class Ran(NamedTuple):
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def lmap(toy: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Ran]:
+    """Runs a command in the toy's folder."""
+
+    def run(*arguments: str) -> Ran:
+        monkeypatch.setattr(sys, "argv", ["lmap", *arguments])
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as left:
+            app.main()
+        out, err = capfd.readouterr()
+        assert isinstance(left.value.code, int)
+        return Ran(left.value.code, out, err)
+
+    return run
+
+
+@pytest.mark.parametrize("command", [[], ["check"], ["list"], ["run"], ["channels"]])
+def test_every_help_shows_an_example(lmap: Callable[..., Ran], command: list[str]) -> None:
+    ran = lmap(*command, "--help")
+    assert ran.code == 0
+    assert f"Example: lmap {' '.join(command)}".rstrip() in ran.out
+
+
+def test_help_answers_at_once() -> None:
+    best = 9.0
+    for _ in range(3):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "lmap", "--help"], check=True, capture_output=True)
+        best = min(best, time.perf_counter() - start)
+    assert best < 1.0
+
+
+def test_a_check_that_passes_leaves_with_0_and_prints_a_table(lmap: Callable[..., Ran]) -> None:
+    ran = lmap("check", "sway")
+    assert ran.code == 0
+    assert "lateral acceleration" in ran.out
+    assert "running 2 cases" in ran.err
+    assert "running" not in ran.out
+
+
+def test_a_check_that_fails_leaves_with_1(lmap: Callable[..., Ran]) -> None:
+    assert lmap("check", "sway", "--set", "yaw_damper.cx=0").code == 1
+
+
+def test_a_check_that_cannot_be_judged_leaves_with_2(lmap: Callable[..., Ran]) -> None:
+    assert lmap("check", "sway", "--set", "run.test=diverge").code == 2
+
+
+def test_quiet_says_nothing_on_stderr(lmap: Callable[..., Ran]) -> None:
+    assert lmap("check", "sway", "--quiet").err == ""
+
+
+def test_json_is_one_object_and_nothing_else(lmap: Callable[..., Ran]) -> None:
+    ran = lmap("check", "sway", "--json")
+    document = json.loads(ran.out)
+    assert ran.code == 0
+    assert {"version", "specs"} <= set(document)
+    [spec] = document["specs"]
+    assert {"id", "title", "file", "verdict", "criteria"} <= set(spec)
+    keys = {"name", "case", "value", "unit", "limit", "margin", "verdict", "source", "published"}
+    assert all(keys <= set(criterion) for criterion in spec["criteria"])
+    assert len(spec["criteria"]) == 6
+
+
+def test_one_and_two_threads_and_two_runs_give_the_same_json(lmap: Callable[..., Ran]) -> None:
+    runs = [lmap("check", "sway", "--json", "--jobs", jobs).out for jobs in ("1", "2", "2")]
+    assert runs[0] == runs[1] == runs[2]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["check", "gone.toml"], "lmap: gone.toml: found no such file; allowed: a spec file or folder\n"),
+        (
+            ["check", "sway", "--set", "run.speed_kmh=0"],
+            "lmap: specs/sway.toml: --set run.speed_kmh: found 0; allowed: a number > 0 (km/h), or a list of "
+            "these\n",
+        ),
+        (
+            ["check", "sway", "--set", "nonsense"],
+            'lmap: --set: found "nonsense"; allowed: KEY=VALUE, e.g. secondary.kz=5e5\n',
+        ),
+        (["run", "gone.json"], "lmap: gone.json: found no such file; allowed: a case file\n"),
+        (
+            ["channels", "tyo"],
+            'lmap: found "tyo"; allowed: a vehicle that ships (',
+        ),
+    ],
+)
+def test_bad_input_leaves_with_2_one_message_and_no_file(
+    lmap: Callable[..., Ran], toy: Path, arguments: list[str], message: str
+) -> None:
+    before = sorted(toy.rglob("*"))
+    extra = ["--report", "out"] if arguments[0] == "check" else []
+    ran = lmap(*arguments, *extra)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith(message)
+    assert ran.err.count("\n") == 1
+    assert sorted(toy.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    "arguments", [["check"], ["check", "sway", "--jobs", "0"], ["chekc"], ["check", "--nope"]]
+)
+def test_wrong_usage_leaves_with_2(lmap: Callable[..., Ran], arguments: list[str]) -> None:
+    ran = lmap(*arguments)
+    assert (ran.code, ran.out) == (2, "")
+    assert "Error" in ran.err
+
+
+def test_list_shows_tests_and_criteria(lmap: Callable[..., Ran]) -> None:
+    ran = lmap("list")
+    assert ran.code == 0
+    assert "9.1" in ran.out
+    assert "|x| < 0.35 g" in ran.out
+
+
+def test_channels_have_unit_and_meaning(lmap: Callable[..., Ran]) -> None:
+    assert "carbody.lead_pivot.ay" in lmap("channels", "toy").out
+    listed = json.loads(lmap("channels", "toy", "--json").out)
+    assert {"name": "t", "unit": "s", "meaning": "time"} in listed
+
+
+def test_a_report_is_written_whole_and_leaves_what_was_there(lmap: Callable[..., Ran], toy: Path) -> None:
+    (toy / "out").mkdir()
+    (toy / "out" / "notes.txt").write_text("mine", encoding="utf-8")
+    assert lmap("check", "sway", "--report", "out").code == 0
+    made = {path.name for path in (toy / "out").iterdir()}
+    assert {"index.html", "verdicts.json", "junit.xml", "cases", "notes.txt"} <= made
+    assert [path.name for path in toy.iterdir() if path.name.startswith(".")] == []
+
+
+def test_a_case_of_a_report_runs_again_to_the_same_frame(lmap: Callable[..., Ran], toy: Path) -> None:
+    assert lmap("check", "sway", "--report", "out").code == 0
+    case = next((toy / "out" / "cases").glob("*.json"))
+    assert lmap("run", str(case), "--output", "again.parquet").code == 0
+    assert pl.read_parquet("again.parquet").equals(pl.read_parquet(case.with_suffix(".parquet")))
+    assert Path("again.parquet").read_bytes() == case.with_suffix(".parquet").read_bytes()
+    metadata = pl.read_parquet_metadata("again.parquet")
+    assert metadata["lmap.case"] == case.stem
+    assert json.loads(metadata["lmap.channels"])[0] == {"name": "t", "unit": "s", "meaning": "time"}
+
+
+def test_a_report_that_is_a_file_is_refused_before_anything_runs(lmap: Callable[..., Ran], toy: Path) -> None:
+    (toy / "out").write_text("", encoding="utf-8")
+    ran = lmap("check", "sway", "--report", "out")
+    assert ran.code == 2
+    assert ran.err == "lmap: --report: found out, a file; allowed: a folder\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT between processes")
+def test_ctrl_c_stops_within_a_second_and_leaves_nothing(toy: Path) -> None:
+    command = [sys.executable, str(FAKE), "--slow", "60", "check", "sway", "--report", "out"]
+    source = str(Path(importlib.util.find_spec("lmap").origin).parent.parent)  # type: ignore[union-attr, arg-type]
+    environment = {**os.environ, "PYTHONPATH": source}
+    before = sorted(toy.rglob("*"))
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    ) as process:
+        assert process.stderr is not None
+        assert process.stdout is not None
+        assert process.stderr.readline().startswith("running 2 cases")
+        start = time.perf_counter()
+        process.send_signal(signal.SIGINT)
+        code = process.wait(timeout=10)
+        assert time.perf_counter() - start < 1.0
+        assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
+    assert sorted(toy.rglob("*")) == before
+
+
+def test_a_fault_of_ours_does_not_look_like_a_criterion_that_fails(
+    lmap: Callable[..., Ran], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise RuntimeError("our fault")
+
+    monkeypatch.setattr(sys.modules["lmap.prepare"], "prepare", broken)
+    ran = lmap("check", "sway")
+    assert ran.code == 2
+    assert "our fault" in ran.err

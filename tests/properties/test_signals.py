@@ -1,0 +1,96 @@
+"""Properties of the statistics over random signals."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import polars as pl
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from lmap.signals.filters import Lowpass
+from lmap.signals.statistic import AveragePeak, MaxAbs, SlidingMean, Sustained, half_wave_peaks
+
+RATE = 200.0
+values = arrays(np.float64, st.integers(60, 400), elements=st.floats(-1e3, 1e3, width=32))
+
+
+def signal(x: npt.NDArray[np.float64], speed: float = 7.3) -> pl.DataFrame:
+    t = np.arange(len(x)) / RATE
+    return pl.DataFrame({"t": t, "s": speed * t, "x": x})
+
+
+@given(values, st.integers(1, 40))
+def test_sustained_is_the_brute_force_maximum_of_window_minima(
+    x: npt.NDArray[np.float64], steps: int
+) -> None:
+    ours = Sustained(window_s=steps / RATE).read(signal(x)).value
+    assert ours == max(x[i : i + steps + 1].min() for i in range(len(x) - steps))
+
+
+@given(values)
+def test_sustained_falls_as_the_window_grows(x: npt.NDArray[np.float64]) -> None:
+    read = [Sustained(window_s=steps / RATE).read(signal(x)).value for steps in (1, 5, 20, 50)]
+    assert read == sorted(read, reverse=True)
+    assert read[0] <= x.max()
+
+
+@given(values)
+def test_sustained_is_never_above_the_sliding_mean(x: npt.NDArray[np.float64]) -> None:
+    frame = signal(x)
+    mean = SlidingMean(window_m=1.0).read(frame).value if frame["s"][-1] >= 1.0 else np.inf
+    held = Sustained(window_m=1.0).read(frame).value if frame["s"][-1] >= 1.0 else -np.inf
+    assert held <= mean + 1e-9 * max(1.0, abs(mean))
+
+
+@given(values, st.integers(20, 50))
+def test_average_peak_is_the_brute_force_best_window_and_never_above_the_largest_peak(
+    x: npt.NDArray[np.float64], steps: int
+) -> None:
+    frame, window = signal(x), steps / RATE
+    peaks = half_wave_peaks(frame)
+    t, height = peaks["t"].to_numpy(), peaks["x"].to_numpy()
+    begin, last = frame["t"][0], frame["t"][-1] - window
+    # every subset of neighbouring peaks that fits into a window that fits into the record
+    best = None
+    for i in range(len(t)):
+        for j in range(i + 1, len(t)):
+            low, high = max(begin, t[j] - window), min(last, t[i])
+            before = t[i - 1] if i > 0 else -np.inf
+            after = t[j + 1] if j + 1 < len(t) else np.inf
+            if low <= high and max(low, before) < min(high, after - window) - 1e-9:
+                mean = height[i : j + 1].mean()
+                best = mean if best is None else max(best, mean)
+    if best is None:
+        return
+    ours = AveragePeak(window_s=window).read(frame).value
+    assert ours <= height.max() * (1.0 + 1e-12)
+    assert ours >= best * (1.0 - 1e-9) or np.isclose(ours, best)
+
+
+@settings(deadline=None)
+@given(
+    arrays(np.float64, 600, elements=st.floats(-10, 10, width=32)),
+    arrays(np.float64, 600, elements=st.floats(-10, 10, width=32)),
+    st.floats(-3, 3),
+)
+def test_lowpass_is_linear(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], k: float) -> None:
+    low = Lowpass(cutoff_hz=10.0)
+    one, two, both = (low.apply(signal(x))["x"].to_numpy() for x in (a, b, a + k * b))
+    # rounding of the recursion, some 1e-16 times its gain, on values of 10
+    np.testing.assert_allclose(both, one + k * two, atol=1e-11)
+
+
+@settings(deadline=None)
+@given(arrays(np.float64, 600, elements=st.floats(-10, 10, width=32)))
+def test_zero_phase_lowpass_of_a_reversed_signal_is_the_reversed_result(x: npt.NDArray[np.float64]) -> None:
+    low = Lowpass(cutoff_hz=10.0)
+    forward, back = (low.apply(signal(values))["x"].to_numpy() for values in (x, x[::-1].copy()))
+    # forward-backward and backward-forward differ by what the padding leaves of the ends after 1 s, exp(-60)
+    np.testing.assert_allclose(forward, back[::-1], atol=1e-9)
+
+
+@given(values)
+def test_max_abs_is_the_largest_size(x: npt.NDArray[np.float64]) -> None:
+    assert MaxAbs().read(signal(x)).value == np.abs(x).max()
