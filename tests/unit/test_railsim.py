@@ -6,11 +6,13 @@ import subprocess
 import sys
 import textwrap
 import time
+from pathlib import Path
 
 import polars as pl
 import pytest
 
 from lmap import _railsim
+from lmap.prepare import prepare
 
 pytestmark = pytest.mark.timeout(60)
 
@@ -303,3 +305,128 @@ def test_other_threads_run_meanwhile() -> None:
     finally:
         stop.set()
         thread.join()
+
+
+# Cases of the real core
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def case() -> str:
+    """The hunting test on new wheels and 60 m of track, as JSON."""
+    settings = {"track.length": 60.0, "run.wheel_profile": "anzr1"}
+    (case,) = prepare(ROOT / "specs/hunting.toml", settings).cases
+    return case.json
+
+
+def run_cases(*cases: str, jobs: int = 2) -> list[_railsim.Frame | _railsim.RailsimError | None]:
+    results: list[_railsim.Frame | _railsim.RailsimError | None] = [None] * len(cases)
+    _railsim.run_cases(list(cases), jobs, lambda *_: None, results.__setitem__)
+    return results
+
+
+def test_a_case_gives_the_channels_that_it_announces(case: str) -> None:
+    _railsim.check_case(case)
+    announced = _railsim.channels(case)
+    (frame,) = run_cases(case)
+    assert isinstance(frame, _railsim.Frame)
+    assert frame.names == [name for name, _, _ in announced]
+    assert all(unit and meaning for _, unit, meaning in announced)
+    assert frame.ended["kind"] == "end_of_track"
+    table = pl.DataFrame(frame)
+    assert table.null_count().sum_horizontal().item() == 0
+    assert table["t"].diff().drop_nulls().to_list() == pytest.approx([0.005] * (table.height - 1))
+    assert frame.statistics["steps"] > 0
+
+
+def test_any_number_of_threads_gives_the_same_bytes(case: str) -> None:
+    def tables(jobs: int) -> list[bytes]:
+        frames = run_cases(*[case] * 3, jobs=jobs)
+        return [pl.DataFrame(frame).serialize() for frame in frames]
+
+    one, many = tables(1), tables(3)
+    assert one == many
+    assert len(set(one)) == 1
+
+
+def test_a_bad_case_among_good_ones_is_its_own_loss(case: str) -> None:
+    data = json.loads(case)
+    data["run"]["speed"] = 0.0
+    data["track"]["length"] = "long"
+    good, bad, not_json = run_cases(case, json.dumps(data), "{")
+    assert isinstance(good, _railsim.Frame)
+    assert isinstance(bad, _railsim.InputError)
+    assert {fault["path"] for fault in bad.faults} == {"run.speed", "track.length"}
+    assert isinstance(not_json, _railsim.InputError)
+    with pytest.raises(_railsim.InputError) as caught:
+        _railsim.check_case(json.dumps(data))
+    assert caught.value.faults == bad.faults
+
+
+def test_track_extremes_hold_what_a_run_meets(case: str) -> None:
+    extremes = _railsim.track_extremes(case)
+    assert set(extremes) == {"lateral", "vertical", "cross_level", "gauge"}
+    assert all(low < 0.0 < high for low, high in extremes.values())
+
+
+def test_equivalent_conicity_is_a_number_or_none(case: str) -> None:
+    conicity = _railsim.equivalent_conicity(case, 0.003)
+    assert conicity is not None
+    assert 0.01 < conicity < 0.5
+    assert _railsim.equivalent_conicity(case, 1.0) is None
+
+
+def test_profile_points_keep_their_decimals() -> None:
+    text = "# source\ny,z\n-46.1,3.3\n0,0\n12.123456,-0.000001\n"
+    assert json.loads(_railsim.read_profile(text, "x")) == {
+        "points": [[-46.1, 3.3], [0, 0], [12.123456, -1e-6]]
+    }
+    with pytest.raises(_railsim.InputError, match="no point"):
+        _railsim.read_profile("# nothing", "x")
+
+
+def test_vehicle_resolves_with_overrides(case: str) -> None:
+    document = json.loads(case)["vehicle"]
+    resolved = json.loads(_railsim.vehicle_resolve(json.dumps(document), "{}", "tare"))
+    assert resolved["design_speed"] == pytest.approx(115.0 / 3.6)
+    assert 120e3 < resolved["mass"] < 140e3
+    assert "carbody" in resolved["bodies"]
+    assert resolved["document"] == document
+    with pytest.raises(_railsim.InputError) as caught:
+        _railsim.vehicle_resolve(json.dumps(document), '{"no.such": 1.0}')
+    assert caught.value.faults[0]["key"][0] == "set"
+
+
+@pytest.mark.parametrize("broken", ["{", "[]", "1"])
+def test_vehicle_that_is_no_object_is_bad_input(broken: str) -> None:
+    with pytest.raises(_railsim.InputError):
+        _railsim.vehicle_resolve(broken, "{}")
+    with pytest.raises(_railsim.InputError):
+        _railsim.vehicle_resolve("{}", broken)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals to a process are sent otherwise there")
+def test_ctrl_c_stops_a_real_run_within_a_second(case: str, tmp_path: Path) -> None:
+    data = json.loads(case)
+    data["track"]["length"] = 1e6
+    (tmp_path / "case.json").write_text(json.dumps(data))
+    code = """
+        from pathlib import Path
+        from lmap import _railsim
+        try:
+            cases = [Path("case.json").read_text()] * 2
+            _railsim.run_cases(cases, 2, lambda *_: print("on", flush=True), print)
+        except KeyboardInterrupt:
+            print("interrupted", flush=True)
+    """
+    process = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code)], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "on\n"
+    start = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    rest, _ = process.communicate(timeout=10)
+    assert time.monotonic() - start < 1.0
+    assert rest.splitlines()[-1] == "interrupted"
