@@ -37,15 +37,16 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_two_runs_and_one_or_two_threads_give_the_same_parquet_files(tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_two_runs_on_one_and_two_threads_give_the_same_parquet_files(tmp_path: Path) -> None:
     hashes = []
-    for name, jobs in (("a", "1"), ("b", "2"), ("c", "2")):
+    for name, jobs in (("a", "1"), ("b", "2")):
         done = run(tmp_path, "check", "hunting", "--quiet", "--report", name, "--jobs", jobs, *SHORT)
         assert done.returncode in (0, 1), done.stderr
         files = sorted((tmp_path / name / "cases").iterdir())
         assert len(files) == 4
         hashes.append({path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files})
-    assert hashes[0] == hashes[1] == hashes[2]
+    assert hashes[0] == hashes[1]
 
 
 def test_ctrl_c_stops_the_core_within_a_second_and_leaves_nothing(tmp_path: Path) -> None:
