@@ -48,11 +48,10 @@ def test_the_twin_fails_for_its_criterion(twin: Path) -> None:
     written = read(twin)
     acceptance = lmap.check(ROOT / "specs" / f"{written['spec']}.toml", set=written["set"])
     [spec] = acceptance.specs
-    for criterion in spec.criteria:
-        print(f"{criterion.case}: {criterion.name}: {criterion.value} {criterion.unit}, {criterion.outcome}")
-    assert acceptance.exit_code == 1
+    found = [f"{one.case}: {one.name}: {one.value} {one.unit}, {one.outcome}" for one in spec.criteria]
+    assert acceptance.exit_code == 1, found
     failed = {criterion.name for criterion in spec.criteria if criterion.outcome is Outcome.FAIL}
-    assert written["must_fail"] in failed
+    assert written["must_fail"] in failed, found
 
 
 @pytest.mark.slow
