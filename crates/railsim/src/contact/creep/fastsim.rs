@@ -29,7 +29,7 @@ use std::f64::consts::PI;
 #[serde(deny_unknown_fields)]
 pub struct Fastsim {
     /// Elements along rolling, 2 to 400. Default 10: within 0.006 mu N of a fine grid without spin
-    /// (0.16 mu N in saturated combined spin) at a four-hundredth of the cost of 200 x 200.
+    /// (0.08 mu N with saturated spin, 0.02 in the mean) at a four-hundredth of the cost of 200 x 200.
     #[serde(default = "ten")]
     pub nx: u16,
     /// Strips across, 2 to 400. Default 10. Multiples of ten are cheapest, then even numbers.
