@@ -21,7 +21,7 @@ pub use pose::{Pose, Wrench};
 pub use rigid_body::RigidBody;
 pub use wheelset::Wheelset;
 
-use crate::math::{Mat3, Vec3, rotation};
+use crate::math::{Mat3, Vec3, angle, rotation};
 use crate::track::Frame;
 
 /// Coordinates of one body, in the order of the state.
@@ -101,8 +101,8 @@ pub(crate) fn kinematics(q: &[f64], u: &[f64], frame: Frame, spins: bool, dq: &m
     dq[1] = v_T.y + s_dot * k.x * z;
     dq[2] = v_T.z - s_dot * k.x * y;
 
-    let (sin_phi, cos_phi) = q[3].sin_cos();
-    let (sin_psi, cos_psi) = q[5].sin_cos();
+    let (sin_phi, cos_phi) = angle::small(q[3]);
+    let (sin_psi, cos_psi) = angle::small(q[5]);
     // Axle axes: Rz(psi) Rx(phi), written out.
     let R_TA = Mat3::new(
         cos_psi,
@@ -119,7 +119,8 @@ pub(crate) fn kinematics(q: &[f64], u: &[f64], frame: Frame, spins: bool, dq: &m
     let (R_TB, w_A) = if spins {
         (R_TA, w_B)
     } else {
-        let R_AB = rotation::rot_y(q[4]);
+        let (s, c) = angle::small(q[4]);
+        let R_AB = Mat3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c);
         (R_TA * R_AB, R_AB * w_B)
     };
     let relative = w_A - R_TA.tr_mul(&w_T);

@@ -99,8 +99,10 @@ impl ForceLaw for Bushing {
         let f_A = half(a, &v_A); // written in A's axes, acts at B's point
         let f_B = half(b, &v_B); // written in B's axes, acts at A's point
         let f = f_A + f_B;
-        let mut on_A = Wrench { f: -f, m: -((q_A + D).cross(&f_A) + q_A.cross(&f_B)) };
-        let mut on_B = Wrench { f, m: q_B.cross(&f_A) + (q_B - D).cross(&f_B) };
+        // (q_A + D) x f_A + q_A x f_B, and what balances it about any point.
+        let m = q_A.cross(&f) + D.cross(&f_A);
+        let mut on_A = Wrench { f: -f, m: -m };
+        let mut on_B = Wrench { f, m: m - (b.r - a.r).cross(&f) };
         if self.rotational_stiffness.is_some() || self.rotational_damping.is_some() {
             let k = self.rotational_stiffness.unwrap_or_default();
             let c = self.rotational_damping.unwrap_or_default();

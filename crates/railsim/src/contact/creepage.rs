@@ -13,6 +13,7 @@ use crate::body::Kinematics;
 use crate::contact::creep::Creepage;
 use crate::contact::geometry_table::ContactPoint;
 use crate::math::Vec3;
+use crate::math::angle::{self, SinCos};
 use crate::track::irregularity::Deviation;
 
 /// Lateral distance over which cross level is defined, m: the usual distance of contact points on standard gauge.
@@ -42,6 +43,8 @@ pub struct RailPose {
     pub origin: [f64; 2],
     /// Roll of the rail in side coordinates, rad.
     pub roll: f64,
+    /// Its sine and cosine.
+    pub turn: SinCos,
     /// Velocity of the running surface at the origin as seen from the moving frame, y~ and z, m/s: that of the
     /// track mass plus the deviation passing below.
     pub surface_velocity: [f64; 2],
@@ -58,6 +61,7 @@ pub fn rail_pose(sigma: f64, rail_y: f64, dev: &Deviation, track: &TrackMotion, 
     RailPose {
         origin: [y + sigma * (dev.y + track.y), dev.z + track.z + sigma * y * roll],
         roll: sigma * roll,
+        turn: angle::small(sigma * roll),
         surface_velocity: [
             0.5 * dev.dgauge_ds * s_dot + sigma * (dev.dy_ds * s_dot + track.vy),
             dev.dz_ds * s_dot + track.vz + sigma * y * roll_rate,
@@ -91,10 +95,10 @@ pub fn wheel_pose(
     nominal_shift: f64,
     rail: &RailPose,
 ) -> WheelPose {
-    let tape = k.R_TB * Vec3::new(0.0, sigma * tape_half_distance, radius);
-    let y = sigma * (q[1] + tape.y) - rail.origin[0];
-    let z = q[2] + tape.z - rail.origin[1];
-    let (sin, cos) = rail.roll.sin_cos();
+    let half = sigma * tape_half_distance;
+    let y = sigma * (q[1] + k.R_TB[(1, 1)] * half + k.R_TB[(1, 2)] * radius) - rail.origin[0];
+    let z = q[2] + k.R_TB[(2, 1)] * half + k.R_TB[(2, 2)] * radius - rail.origin[1];
+    let (sin, cos) = rail.turn;
     WheelPose {
         shift: y * cos + z * sin - nominal_shift,
         depth: z * cos - y * sin,
@@ -124,7 +128,8 @@ pub struct PlacedContact {
     pub creepage: Creepage,
 }
 
-/// Places a contact of the geometry table in the track frame and computes its creepages at rolling speed `speed`.
+/// Places a contact of the geometry table in the track frame and computes its creepages at rolling speed `speed`;
+/// `w_T` is the wheelset's angular velocity in track axes.
 #[inline]
 #[must_use]
 #[allow(clippy::too_many_arguments)] // one stage of the right-hand side, all of it plain data
@@ -136,12 +141,14 @@ pub fn place(
     radius: f64,
     q: &[f64],
     k: &Kinematics,
+    w_T: &Vec3,
     track: &TrackMotion,
     speed: f64,
 ) -> PlacedContact {
-    let (sin_r, cos_r) = rail.roll.sin_cos();
+    let (sin_r, cos_r) = rail.turn;
     // The contact plane's tilt in the track frame; the angle is positive where the flange is.
-    let (sin_g, cos_g) = (contact.angle - rail.roll).sin_cos();
+    let tilt = angle::small(contact.angle);
+    let (sin_g, cos_g) = angle::add(tilt, (-sin_r, cos_r));
     let e_t = Vec3::new(0.0, sigma * cos_g, -sin_g);
     let e_n = Vec3::new(0.0, -sigma * sin_g, -cos_g);
     let side_y = rail.origin[0] + contact.y_rail * cos_r - contact.z_rail * sin_r;
@@ -152,9 +159,8 @@ pub fn place(
     let lead = (radius + contact.z_wheel) * yaw * sin_g / cos_g;
     // The wheel itself stands behind or ahead of the axle's centre, turned there by yaw with the axle.
     let across = y - q[1];
-    let lever = Vec3::new(lead - across * q[5].tan(), across, z - q[2]);
+    let lever = Vec3::new(lead - across * k.R_TB[(1, 0)] / k.R_TB[(0, 0)], across, z - q[2]);
 
-    let w_T = k.R_TB * k.w_B;
     let v_wheel = k.v_T + w_T.cross(&lever);
     let v_rail = Vec3::new(0.0, track.vy - track.vphi * z, track.vz + track.vphi * y);
     let slip = v_wheel - v_rail;
@@ -167,7 +173,7 @@ pub fn place(
         point: [y, z],
         e_t,
         e_n,
-        penetration: contact.penetration * contact.angle.cos(),
+        penetration: contact.penetration * tilt.1,
         approach_rate: -(v_wheel - surface).dot(&e_n),
         slip: [slip.x, slip_t],
         creepage: Creepage { xi: slip.x / speed, eta: slip_t / speed, phi: spin / speed },

@@ -4,6 +4,7 @@ use crate::body::rigid_body::kinetic_energy;
 use crate::connection::ForceLaw;
 use crate::dynamics::model::{Contact, Model};
 use crate::dynamics::rhs::VehicleSystem;
+use crate::dynamics::scratch::Wheel;
 
 /// Total energy (J) at the last evaluated state `x`: kinetic and of position, against an arbitrary zero.
 #[must_use]
@@ -19,7 +20,7 @@ pub fn total(system: &VehicleSystem<'_>, t: f64, x: &[f64]) -> f64 {
         energy +=
             link.law.energy(&scratch.kinematics[link.a].pose, &scratch.kinematics[link.b].pose, &link.mount);
     }
-    for contact in scratch.wheels.iter().flatten().flat_map(|wheel| wheel.contacts.iter().flatten()) {
+    for contact in scratch.wheels.iter().flatten().flat_map(Wheel::contacts) {
         let delta = contact.placed.penetration;
         energy += match (&model.contact, &contact.geometry) {
             // Hertz: the integral of share C delta^1.5.

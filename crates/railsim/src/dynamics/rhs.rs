@@ -1,10 +1,10 @@
 //! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
 
-use crate::body::{Wrench, kinematics, rigid_body, wheelset};
+use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, wheelset};
 use crate::connection::ForceLaw;
-use crate::contact::creep::{CreepForce, Patch};
+use crate::contact::creep::{Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
-use crate::contact::geometry_table::{ContactPoint, GeometryTable};
+use crate::contact::geometry_table::ContactPoint;
 use crate::contact::normal::hunt_crossley;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::model::{Contact, Model};
@@ -83,18 +83,34 @@ impl<'m> VehicleSystem<'m> {
 
     fn contact_stage(&mut self, x: &[f64]) {
         let first = self.model.bodies.len();
+        let scratch = &mut self.scratch;
         for w in 0..self.model.wheelsets.len() {
             let q = &x[self.map.q(first + w)];
+            let k = &scratch.kinematics[first + w];
             let deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
-            self.scratch.deviation[w] = deviation;
+            scratch.deviation[w] = deviation;
             let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
-            let track = TrackMotion { y: tq[0], z: tq[1], phi: tq[2], vy: tu[0], vz: tu[1], vphi: tu[2] };
+            let axle = Axle {
+                model: self.model,
+                set: &self.model.wheelsets[w],
+                creeping: self.creeping,
+                q,
+                k,
+                w_T: k.R_TB * k.w_B,
+                speed: k.v_T.x.abs().max(LEAST_ROLLING_SPEED),
+                track: TrackMotion { y: tq[0], z: tq[1], phi: tq[2], vy: tu[0], vz: tu[1], vphi: tu[2] },
+                deviation,
+            };
             let mut force = Vec3::zeros();
             let mut moment = Vec3::zeros();
             let mut load = [0.0; 3];
             for (side, sigma) in [-1.0, 1.0].into_iter().enumerate() {
-                let wheel = self.wheel(w, sigma, q, &track, &deviation);
-                for contact in wheel.contacts.iter().flatten() {
+                let wheel = &mut scratch.wheels[w][side];
+                if let Err(out) = axle.wheel(sigma, wheel) {
+                    scratch.left_rail =
+                        Some(LeftRail { wheelset: w, side: sigma, shift: out.shift, roll: out.roll });
+                }
+                for contact in wheel.contacts() {
                     let f = total_force(contact);
                     force += f;
                     moment += contact.placed.lever.cross(&f);
@@ -103,77 +119,11 @@ impl<'m> VehicleSystem<'m> {
                     load[1] -= f.z;
                     load[2] -= y * f.z - z * f.y;
                 }
-                self.scratch.wheels[w][side] = wheel;
             }
-            let k = &self.scratch.kinematics[first + w];
-            self.scratch.wrench[first + w].f += k.frame.R_IT * force;
-            self.scratch.wheel_moment[w] = k.R_TB.tr_mul(&moment);
-            self.scratch.track_load[w] = load;
+            scratch.wrench[first + w].f += k.frame.R_IT * force;
+            scratch.wheel_moment[w] = k.R_TB.tr_mul(&moment);
+            scratch.track_load[w] = load;
         }
-    }
-
-    /// One wheel: place it on its rail, look its contacts up, give each its normal and creep force.
-    fn wheel(&mut self, w: usize, sigma: f64, q: &[f64], track: &TrackMotion, dev: &Deviation) -> Wheel {
-        let set = &self.model.wheelsets[w];
-        let k = &self.scratch.kinematics[self.model.bodies.len() + w];
-        let speed = k.v_T.x.abs().max(LEAST_ROLLING_SPEED);
-        let mut wheel = Wheel::default();
-        match &self.model.contact {
-            Contact::Profiles { table, law, shear_modulus, dissipation, friction } => {
-                let rail_y = table.rail_origin_y();
-                let rail = rail_pose(sigma, rail_y, dev, track, k.s_dot);
-                let nominal = set.tape_half_distance - rail_y;
-                let pose = wheel_pose(sigma, q, k, set.tape_half_distance, set.radius, nominal, &rail);
-                wheel.shift = pose.shift;
-                let mut found = [ContactPoint::default(); 2];
-                let Some(count) = look_up(table, &pose, &mut found) else {
-                    self.scratch.left_rail =
-                        Some(LeftRail { wheelset: w, side: sigma, shift: pose.shift, roll: pose.roll });
-                    return wheel;
-                };
-                for (slot, point) in found[..count].iter().enumerate() {
-                    let placed = place(sigma, point, &rail, pose.yaw, set.radius, q, k, track, speed);
-                    let n =
-                        hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
-                    let normal = point.share * n.force;
-                    let mut contact = ContactForce {
-                        geometry: Some(*point),
-                        placed,
-                        normal,
-                        normal_slope: [point.share * n.stiffness, point.share * n.damping],
-                        creep: [0.0; 2],
-                        creep_slope: [0.0; 2],
-                    };
-                    if self.creeping && normal > 0.0 && *friction > 0.0 {
-                        let root = normal.cbrt();
-                        let patch = Patch {
-                            a: point.a1 * root,
-                            b: point.b1 * root,
-                            n: normal,
-                            c11: point.c11,
-                            c22: point.c22,
-                            c23: point.c23,
-                            shear_modulus: *shear_modulus,
-                        };
-                        let f = law.force(&patch, &placed.creepage, *friction);
-                        contact.creep = [f.fx, f.fy];
-                        contact.creep_slope = secant(&patch, &placed, &f, speed);
-                    }
-                    add(&mut wheel, slot, contact, sigma);
-                }
-            }
-            Contact::Textbook(book) => {
-                let rail = rail_pose(sigma, set.tape_half_distance, dev, track, k.s_dot);
-                let pose = wheel_pose(sigma, q, k, set.tape_half_distance, set.radius, 0.0, &rail);
-                wheel.shift = pose.shift;
-                if pose.depth > 0.0 {
-                    let contact =
-                        textbook(book, sigma, &pose, set.radius, set.tape_half_distance, k, track, speed);
-                    add(&mut wheel, 0, contact, sigma);
-                }
-            }
-        }
-        wheel
     }
 
     fn connection_stage(&mut self) {
@@ -232,75 +182,119 @@ impl<'m> VehicleSystem<'m> {
     }
 }
 
+/// A wheelset as its two wheels see it.
+struct Axle<'a> {
+    model: &'a Model,
+    set: &'a Wheelset,
+    creeping: bool,
+    q: &'a [f64],
+    k: &'a Kinematics,
+    w_T: Vec3,
+    speed: f64,
+    track: TrackMotion,
+    deviation: Deviation,
+}
+
+impl Axle<'_> {
+    /// One wheel: place it on its rail, look its contacts up, give each its normal and creep force. Gives back the pose
+    /// with which the wheel left the table.
+    #[inline]
+    fn wheel(&self, sigma: f64, wheel: &mut Wheel) -> Result<(), WheelPose> {
+        match &self.model.contact {
+            Contact::Profiles { table, law, shear_modulus, dissipation, friction } => {
+                let (half, radius) = (self.set.tape_half_distance, self.set.radius);
+                let rail_y = table.rail_origin_y();
+                let rail = rail_pose(sigma, rail_y, &self.deviation, &self.track, self.k.s_dot);
+                let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
+                wheel.lift(pose.shift);
+                let mut found = [ContactPoint::default(); 2];
+                let count =
+                    table.contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found).map_err(|_| pose)?;
+                for point in &found[..count] {
+                    let placed = place(
+                        sigma, point, &rail, pose.yaw, radius, self.q, self.k, &self.w_T, &self.track, self.speed,
+                    );
+                    let n = hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
+                    let normal = point.share * n.force;
+                    let mut contact = ContactForce {
+                        geometry: Some(*point),
+                        placed,
+                        normal,
+                        normal_slope: [point.share * n.stiffness, point.share * n.damping],
+                        creep: [0.0; 2],
+                    };
+                    if self.creeping && normal > 0.0 && *friction > 0.0 {
+                        let f = law.force(&patch(point, normal, *shear_modulus), &placed.creepage, *friction);
+                        contact.creep = [f.fx, f.fy];
+                    }
+                    wheel.add(contact, &total_force(&contact), sigma);
+                }
+            }
+            Contact::Textbook(book) => {
+                let (half, radius) = (self.set.tape_half_distance, self.set.radius);
+                let rail = rail_pose(sigma, half, &self.deviation, &self.track, self.k.s_dot);
+                let pose = wheel_pose(sigma, self.q, self.k, half, radius, 0.0, &rail);
+                wheel.lift(pose.shift);
+                if pose.depth > 0.0 {
+                    let contact = self.textbook(book, sigma, &pose);
+                    wheel.add(contact, &total_force(&contact), sigma);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn textbook(&self, book: &Textbook, sigma: f64, pose: &WheelPose) -> ContactForce {
+        let half = sigma * self.set.tape_half_distance;
+        // In axle axes the contact is below the tape circle, at the rolling radius there.
+        let lever = self.k.R_TB * Vec3::new(0.0, half, self.set.radius + book.conicity * pose.shift);
+        let rail = Vec3::new(0.0, self.track.vy, self.track.vz + half * self.track.vphi);
+        let slip = self.k.v_T + self.w_T.cross(&lever) - rail;
+        let creepage = Creepage {
+            xi: slip.x / self.speed,
+            eta: sigma * slip.y / self.speed,
+            phi: sigma * self.w_T.z / self.speed,
+        };
+        let normal = (book.stiffness * pose.depth + book.damping * slip.z).max(0.0);
+        ContactForce {
+            geometry: None,
+            placed: PlacedContact {
+                lever,
+                point: [half + self.track.y, self.track.z],
+                e_t: Vec3::new(0.0, sigma, 0.0),
+                e_n: Vec3::new(0.0, 0.0, -1.0),
+                penetration: pose.depth,
+                approach_rate: slip.z,
+                slip: [slip.x, sigma * slip.y],
+                creepage,
+            },
+            normal,
+            normal_slope: [book.stiffness, book.damping],
+            creep: [-book.f11 * creepage.xi, -book.f22 * creepage.eta - book.f23 * creepage.phi],
+        }
+    }
+}
+
+/// The patch of a contact of the geometry table under load.
 #[inline]
-fn look_up(table: &GeometryTable, pose: &WheelPose, out: &mut [ContactPoint; 2]) -> Option<usize> {
-    table.contacts(pose.shift, pose.roll, pose.depth, pose.yaw, out).ok()
+pub(crate) fn patch(point: &ContactPoint, normal: f64, shear_modulus: f64) -> Patch {
+    let root = normal.cbrt();
+    Patch {
+        a: point.a1 * root,
+        b: point.b1 * root,
+        n: normal,
+        c11: point.c11,
+        c22: point.c22,
+        c23: point.c23,
+        shear_modulus,
+    }
 }
 
 /// Force of one contact on the wheel, track axes, N.
 #[inline]
 pub(crate) fn total_force(c: &ContactForce) -> Vec3 {
     c.normal * c.placed.e_n + c.creep[1] * c.placed.e_t + Vec3::new(c.creep[0], 0.0, 0.0)
-}
-
-#[inline]
-fn add(wheel: &mut Wheel, slot: usize, contact: ContactForce, sigma: f64) {
-    let f = total_force(&contact);
-    wheel.Q -= f.z;
-    wheel.Y -= sigma * f.y;
-    wheel.contacts[slot] = Some(contact);
-}
-
-/// Kalker's slopes, reduced by what saturation leaves of the linear force: creep damping for the implicit scheme.
-#[inline]
-fn secant(p: &Patch, placed: &PlacedContact, f: &CreepForce, speed: f64) -> [f64; 2] {
-    let c = &placed.creepage;
-    let area = p.a * p.b;
-    let (f11, f22) = (p.shear_modulus * area * p.c11, p.shear_modulus * area * p.c22);
-    let linear_x = f11 * c.xi;
-    let linear_y = f22 * c.eta + p.shear_modulus * area * area.sqrt() * p.c23 * c.phi;
-    let linear = linear_x.hypot(linear_y);
-    let left = if linear > 0.0 { (f.fx.hypot(f.fy) / linear).min(1.0) } else { 1.0 };
-    [left * f11 / speed, left * f22 / speed]
-}
-
-#[inline]
-#[allow(clippy::too_many_arguments)]
-fn textbook(
-    book: &Textbook,
-    sigma: f64,
-    pose: &WheelPose,
-    radius: f64,
-    half: f64,
-    k: &crate::body::Kinematics,
-    track: &TrackMotion,
-    speed: f64,
-) -> ContactForce {
-    use crate::contact::creep::Creepage;
-    // In axle axes the contact is below the tape circle, at the rolling radius there.
-    let lever = k.R_TB * Vec3::new(0.0, sigma * half, radius + book.conicity * pose.shift);
-    let w_T = k.R_TB * k.w_B;
-    let slip = k.v_T + w_T.cross(&lever) - Vec3::new(0.0, track.vy, track.vz + sigma * half * track.vphi);
-    let creepage = Creepage { xi: slip.x / speed, eta: sigma * slip.y / speed, phi: sigma * w_T.z / speed };
-    let rate = slip.z;
-    let normal = (book.stiffness * pose.depth + book.damping * rate).max(0.0);
-    ContactForce {
-        geometry: None,
-        placed: PlacedContact {
-            lever,
-            point: [sigma * half + track.y, track.z],
-            e_t: Vec3::new(0.0, sigma, 0.0),
-            e_n: Vec3::new(0.0, 0.0, -1.0),
-            penetration: pose.depth,
-            approach_rate: rate,
-            slip: [slip.x, sigma * slip.y],
-            creepage,
-        },
-        normal,
-        normal_slope: [book.stiffness, book.damping],
-        creep: [-book.f11 * creepage.xi, -book.f22 * creepage.eta - book.f23 * creepage.phi],
-        creep_slope: [book.f11 / speed, book.f22 / speed],
-    }
 }
 
 impl System for VehicleSystem<'_> {

@@ -20,21 +20,43 @@ pub struct ContactForce {
     pub normal_slope: [f64; 2],
     /// Creep force on the wheel, forward and along the outward tangent, N.
     pub creep: [f64; 2],
-    /// Secant creep damping forward and lateral, N s/m.
-    pub creep_slope: [f64; 2],
 }
 
 /// One wheel on its rail. Written by the contact stage.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wheel {
-    /// Contacts, tread before flange.
-    pub contacts: [Option<ContactForce>; 2],
+    slots: [Option<ContactForce>; 2],
+    count: usize,
     /// Outward lateral shift of the wheel on its rail, m.
     pub shift: f64,
     /// Vertical wheel force on the rail, N.
     pub Q: f64,
     /// Lateral wheel force on the rail, outward, N.
     pub Y: f64,
+}
+
+impl Wheel {
+    /// The contacts, tread before flange.
+    pub fn contacts(&self) -> impl Iterator<Item = &ContactForce> {
+        self.slots[..self.count].iter().flatten()
+    }
+
+    /// Off the rail, until contacts are added.
+    pub(crate) fn lift(&mut self, shift: f64) {
+        self.count = 0;
+        self.shift = shift;
+        self.Q = 0.0;
+        self.Y = 0.0;
+    }
+
+    /// Adds a contact whose force on the wheel is `force` (track axes), on side `sigma`.
+    #[inline]
+    pub(crate) fn add(&mut self, contact: ContactForce, force: &Vec3, sigma: f64) {
+        self.Q -= force.z;
+        self.Y -= sigma * force.y;
+        self.slots[self.count] = Some(contact);
+        self.count += 1;
+    }
 }
 
 /// A wheel that left its rail's geometry table.

@@ -3,8 +3,9 @@
 //! contact planes stand still, creep is the secant slope, the suspension above is left out.
 
 use crate::contact::creepage::PlacedContact;
-use crate::dynamics::model::Model;
-use crate::dynamics::scratch::Scratch;
+use crate::dynamics::model::{Contact, Model};
+use crate::dynamics::rhs::{LEAST_ROLLING_SPEED, patch};
+use crate::dynamics::scratch::{ContactForce, Scratch, Wheel};
 use crate::dynamics::state::PAIR;
 use crate::math::Vec3;
 
@@ -17,10 +18,31 @@ fn direction(placed: &PlacedContact, e: &Vec3) -> [f64; PAIR] {
 
 /// Adds `factor * left * right'`.
 fn add_outer(m: &mut [f64], factor: f64, left: &[f64; PAIR], right: &[f64; PAIR]) {
-    for i in 0..PAIR {
-        for j in 0..PAIR {
-            m[i * PAIR + j] += factor * left[i] * right[j];
+    for (row, l) in m.chunks_exact_mut(PAIR).zip(left) {
+        let scaled = factor * l;
+        for (value, r) in row.iter_mut().zip(right) {
+            *value += scaled * r;
         }
+    }
+}
+
+/// Creep damping forward and lateral, N s/m: Kalker's slopes, reduced by what saturation leaves of the linear force.
+fn creep_slope(contact: &Contact, force: &ContactForce, speed: f64) -> [f64; 2] {
+    match (contact, &force.geometry) {
+        (Contact::Textbook(book), _) => [book.f11 / speed, book.f22 / speed],
+        (Contact::Profiles { shear_modulus, .. }, Some(point)) => {
+            let p = patch(point, force.normal, *shear_modulus);
+            let c = &force.placed.creepage;
+            let stiffness = p.shear_modulus * p.a * p.b;
+            let (f11, f22) = (stiffness * p.c11, stiffness * p.c22);
+            let linear_x = f11 * c.xi;
+            let linear_y = f22 * c.eta + stiffness * (p.a * p.b).sqrt() * p.c23 * c.phi;
+            let linear = (linear_x * linear_x + linear_y * linear_y).sqrt();
+            let [fx, fy] = force.creep;
+            let left = if linear > 0.0 { ((fx * fx + fy * fy).sqrt() / linear).min(1.0) } else { 1.0 };
+            [left * f11 / speed, left * f22 / speed]
+        }
+        (Contact::Profiles { .. }, None) => [0.0; 2],
     }
 }
 
@@ -28,7 +50,8 @@ fn add_outer(m: &mut [f64], factor: f64, left: &[f64; PAIR], right: &[f64; PAIR]
 pub fn matrices(model: &Model, scratch: &Scratch, w: usize, k: &mut [f64], c: &mut [f64]) {
     k.fill(0.0);
     c.fill(0.0);
-    for contact in scratch.wheels[w].iter().flat_map(|wheel| wheel.contacts.iter().flatten()) {
+    let speed = scratch.kinematics[model.bodies.len() + w].v_T.x.abs().max(LEAST_ROLLING_SPEED);
+    for contact in scratch.wheels[w].iter().flat_map(Wheel::contacts) {
         let n = direction(&contact.placed, &contact.placed.e_n);
         let t = direction(&contact.placed, &contact.placed.e_t);
         let x = direction(&contact.placed, &Vec3::x());
@@ -38,8 +61,9 @@ pub fn matrices(model: &Model, scratch: &Scratch, w: usize, k: &mut [f64], c: &m
         n_q[4] = 0.0;
         add_outer(k, contact.normal_slope[0], &n, &n_q);
         add_outer(c, contact.normal_slope[1], &n, &n);
-        add_outer(c, contact.creep_slope[0], &x, &x);
-        add_outer(c, contact.creep_slope[1], &t, &t);
+        let slope = creep_slope(&model.contact, contact, speed);
+        add_outer(c, slope[0], &x, &x);
+        add_outer(c, slope[1], &t, &t);
     }
     let body = &model.wheelsets[w].body;
     let mut mass = [0.0; PAIR];
@@ -64,9 +88,10 @@ pub fn matrices(model: &Model, scratch: &Scratch, w: usize, k: &mut [f64], c: &m
         }
     }
     for i in 0..PAIR {
+        let inverse = 1.0 / mass[i];
         for j in 0..PAIR {
-            k[i * PAIR + j] /= mass[i];
-            c[i * PAIR + j] /= mass[i];
+            k[i * PAIR + j] *= inverse;
+            c[i * PAIR + j] *= inverse;
         }
     }
 }
