@@ -306,6 +306,8 @@ def vehicle_channels(name: str) -> list[Channel]:
         "speed": vehicle.data.design_speed,
         "friction": 0.4,
         "wheel_profile": vehicle.data.wheel_profile,
+        "integrator": {"kind": "heun", "step": 0.001},
+        "output_step": 0.005,
     }
     case = build(label="channels", vehicle=vehicle.data, track=track, run=run)
     places = [vehicle.document.path, *([base.path] if base is not None else [])]

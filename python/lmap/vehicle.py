@@ -67,6 +67,7 @@ def _resolve(document: toml.Document, overrides: Mapping[str, Any], condition: s
         track=resolved.get("track"),
         condition=condition,
         conditions=tuple(resolved.get("conditions", ())),
+        design_condition=resolved.get("design_condition"),
         mass=resolved.get("mass"),
         bodies=tuple(resolved.get("bodies", ())),
     )

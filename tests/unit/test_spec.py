@@ -201,6 +201,7 @@ def vehicle() -> VehicleData:
         track=None,
         condition="tare",
         conditions=("tare",),
+        design_condition="full",
         mass=1.0,
         bodies=(),
     )

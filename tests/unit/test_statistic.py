@@ -21,6 +21,7 @@ from lmap.signals.statistic import (
     Percentile,
     Rms,
     SlidingMean,
+    SlidingRms,
     Sustained,
 )
 
@@ -180,6 +181,18 @@ def test_rms_of_a_sine_is_its_amplitude_over_root_two_whatever_its_mean() -> Non
     x = 5.0 + 2.0 * np.sin(2.0 * math.pi * np.arange(2000) / 100.0)
     assert Rms().read(signal(x)).value == pytest.approx(math.sqrt(2.0))
     assert Rms(about_mean=False).read(signal(x)).value == pytest.approx(math.sqrt(25.0 + 2.0))
+
+
+def test_sliding_rms_is_that_of_the_loudest_window_less_its_own_mean() -> None:
+    t = times(20.0)
+    loud = (t >= 8.0) & (t < 11.0)
+    # whole periods fit into the window of 2 s (401 samples, both ends counted: 1 in 400 off)
+    x = 7.0 + np.where(loud, 3.0, 1.0) * np.sin(2.0 * math.pi * 4.0 * t)
+    reading = SlidingRms(window_s=2.0).read(signal(x))
+    assert reading.value == pytest.approx(3.0 / math.sqrt(2.0), rel=4e-3)
+    assert 9.0 <= reading.t <= 10.0
+    whole = SlidingRms(window_s=2.0, about_mean=False).read(signal(x - 7.0))
+    assert whole.value == pytest.approx(3.0 / math.sqrt(2.0), rel=4e-3)
 
 
 # ---- the list

@@ -1,4 +1,5 @@
 //! What every creep law promises, over every arm of `CreepLaw`, and FASTSIM and Polach against other people's numbers.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use proptest::prelude::*;
 use railsim::contact::creep::{CreepForce, CreepLaw, Creepage, Fastsim, Patch, Polach};
@@ -72,7 +73,8 @@ fn slope_at_zero_is_kalkers_times_the_reduction() {
     }
 }
 
-/// Spin too, for the laws built on Kalker's C23 (Polach's spin term is a fit of its own).
+/// Spin too, for the laws built on Kalker's C23. Polach's spin term is a fit of its own: at a/b = 1 it has Kalker's slope too (see the
+/// comparison with CONTACT), elsewhere it need not.
 #[test]
 fn spin_slope_is_kalkers() {
     for law in CreepLaw::examples().into_iter().filter(|law| !matches!(law, CreepLaw::Polach(_))) {
@@ -269,7 +271,7 @@ fn default_grid_against_a_fine_one() {
             .collect();
         e.sort_by(f64::total_cmp);
         report(&format!("FASTSIM 10 x 10 against 200 x 200, {kind}"), &e);
-        let bound = if kind == "xi" || kind == "eta" { 0.005 } else { 0.08 };
+        let bound = if kind == "xi" || kind == "eta" { 0.01 } else { 0.08 };
         assert!(e[e.len() - 1] < bound);
     }
 }
@@ -278,9 +280,9 @@ fn default_grid_against_a_fine_one() {
 #[test]
 fn contact_code_exact_theory_against_fastsim() {
     // on the coarse grid saturated spin is the weak spot: the stress turns by a radian from element to element
-    for (n, spin) in [(200, 0.08), (10, 0.15)] {
+    for (n, spin, combined) in [(200, 0.08, 0.16), (10, 0.15, 0.21)] {
         let law = CreepLaw::Fastsim(Fastsim { nx: n, ny: n });
-        for (kind, bound) in [("xi", 0.045), ("eta", 0.045), ("phi", spin), ("comb", 0.16)] {
+        for (kind, bound) in [("xi", 0.045), ("eta", 0.045), ("phi", spin), ("comb", combined)] {
             let e = errors(&law, "CONTACT", &[kind]);
             report(&format!("FASTSIM {n} x {n} against CONTACT n = 60, {kind}"), &e);
             assert!(e[e.len() - 1] < bound, "{kind}: {:?}", e.last());
@@ -288,13 +290,46 @@ fn contact_code_exact_theory_against_fastsim() {
     }
 }
 
-/// Polach with k_a = k_s = 1 against the exact theory: the method's error, 0.04-0.06 mu N in pure longitudinal creepage.
+/// Polach with k_a = k_s = 1 against the exact theory: the method's error, 0.04-0.06 mu N in pure longitudinal creepage; with large
+/// spin against or along the lateral creepage its spin term is a rough fit.
 #[test]
 fn contact_code_exact_theory_against_polach() {
     let law = CreepLaw::Polach(Polach::default());
-    for (kind, bound) in [("xi", 0.06), ("eta", 0.06), ("phi", 0.25), ("comb", 0.25)] {
+    for (kind, bound) in [("xi", 0.06), ("eta", 0.06), ("phi", 0.16), ("comb", 0.4)] {
         let e = errors(&law, "CONTACT", &[kind]);
         report(&format!("Polach against CONTACT n = 60, {kind}"), &e);
         assert!(e[e.len() - 1] < bound, "{kind}: {:?}", e.last());
     }
+}
+
+/// Formula check: Table 4 of Spiryagin et al. (2013), dry (mu0 .47, k_a .6, k_s .15, A .44, B .7) and wet (.30, .29, .09, .38, .1)
+/// at 22 km/h with the friction of the slip velocity.
+#[test]
+fn spiryagin_2013_table_4_at_22_km_h() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/polach_table4_22kmh.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let p = Patch {
+        a: 7.7463e-3,
+        b: 5.4550e-3,
+        n: 109.5e3,
+        c11: 4.30,
+        c22: 4.0,
+        c23: 1.9,
+        shear_modulus: 80.77e9,
+    };
+    let mut worst = 0.0_f64;
+    for line in text.lines().filter(|l| !l.starts_with('#') && !l.starts_with("slip")) {
+        let f: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+        let w = f[0] * 22.0 / 3.6;
+        for (k_a, k_s, mu0, ratio, decay, theirs) in
+            [(0.6, 0.15, 0.47, 0.44, 0.7, f[1]), (0.29, 0.09, 0.30, 0.38, 0.1, f[2])]
+        {
+            let mu = mu0 * ((1.0 - ratio) * f64::exp(-decay * w) + ratio);
+            let law = CreepLaw::Polach(Polach { k_a, k_s });
+            let ours = -law.force(&p, &Creepage { xi: f[0], eta: 0.0, phi: 0.0 }, mu).fx / p.n;
+            worst = worst.max((ours - theirs).abs());
+        }
+    }
+    println!("largest difference {worst:.6} of the load");
+    assert!(worst < 2e-5);
 }

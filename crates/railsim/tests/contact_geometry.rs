@@ -1,4 +1,5 @@
 //! Contact geometry: closed forms on simple shapes, the shipped pairs, continuity, and the table against a direct search.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use proptest::prelude::*;
 use railsim::KeyPath;
@@ -110,6 +111,32 @@ fn anzr1_on_as60_conicity_and_flange_play() {
     }
     println!("flange play {:.3} mm (6.4)", 1e3 * low);
     assert!((low - 6.4e-3).abs() < 0.1e-3);
+}
+
+/// The table of models/profiles/README.md, to its last figure.
+#[test]
+fn shipped_pairs_have_the_conicity_this_readme_states() {
+    let readme =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/profiles/README.md"))
+            .unwrap();
+    let placement = Placement { wheel_radius: 0.5335, ..PLACEMENT };
+    let mut found = 0;
+    for line in readme.lines() {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let stated: Vec<f64> = cells.iter().skip(1).filter_map(|c| c.parse().ok()).collect();
+        if stated.len() != 3 {
+            continue;
+        }
+        let table =
+            GeometryTable::build(&shipped(cells[0], ProfileKind::Wheel), &as60(), &placement).unwrap();
+        for (amplitude, stated) in [1e-3, 3e-3, 5e-3].into_iter().zip(stated) {
+            let ours = table.equivalent_conicity(amplitude).unwrap();
+            println!("{} at {amplitude} m: {ours:.4} ({stated})", cells[0]);
+            assert!((ours - stated).abs() < 6e-4);
+        }
+        found += 1;
+    }
+    assert_eq!(found, 5);
 }
 
 /// Direct search on the smoothed curves, independent of the table: every 5 micrometres of y over the whole rail.

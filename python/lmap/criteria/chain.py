@@ -216,11 +216,10 @@ def signal_problems(criterion: Criterion, channels: Mapping[str, str]) -> list[P
             allowed = "a channel of the vehicle (`lmap channels VEHICLE` lists them)"
             hint = nearest_hint(pattern, channels)
             problems.append(Problem(found=f'"{pattern}"', allowed=allowed, key=key, hint=hint))
-        for name in names:
-            if criterion.unit in units.UNITS and units.factor(channels[name], criterion.unit) is None:
-                allowed = f"a unit of {name}: {listed(units.comparable(channels[name]))}"
-                problems.append(Problem(found=f'"{criterion.unit}"', allowed=allowed, key=("unit",)))
-                break
+        wrong = [name for name in names if units.factor(channels[name], criterion.unit) is None]
+        if wrong and criterion.unit in units.UNITS and not any(one.key == ("unit",) for one in problems):
+            allowed = f"a unit of {wrong[0]}: {listed(units.comparable(channels[wrong[0]]))}"
+            problems.append(Problem(found=f'"{criterion.unit}"', allowed=allowed, key=("unit",)))
     return problems
 
 

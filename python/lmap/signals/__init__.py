@@ -14,6 +14,7 @@ from lmap.signals.statistic import (
     Percentile,
     Rms,
     SlidingMean,
+    SlidingRms,
     Sustained,
 )
 
@@ -31,6 +32,7 @@ LINKS: tuple[type[Link], ...] = (
     Rms,
     Skip,
     SlidingMean,
+    SlidingRms,
     Sustained,
 )
 """Every link that a chain may name."""

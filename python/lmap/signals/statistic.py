@@ -88,7 +88,7 @@ class _Windowed(Statistic):
             raise ValueError("exactly one of window_s and window_m")
         return self
 
-    def _slide(self, signal: pl.DataFrame, function: Literal["min", "mean"]) -> pl.DataFrame:
+    def _slide(self, signal: pl.DataFrame, function: Literal["min", "mean", "std"]) -> pl.DataFrame:
         if self.window_s is not None:
             return slide(signal, function, over="t", length=self.window_s)
         assert self.window_m is not None  # the validator's other branch
@@ -138,6 +138,25 @@ class SlidingMean(_Windowed):
         """Value and the middle of its window."""
         curve = self._slide(signal, "mean")
         return self._largest(curve.with_columns(pl.col("x").abs()) if self.absolute else curve)
+
+
+class SlidingRms(_Windowed):
+    """Largest root mean square within a window; with `about_mean` less the window's own mean (FRA: 2 s)."""
+
+    name: ClassVar[str] = "sliding_rms"
+    about_mean: bool = True
+
+    @property
+    def is_magnitude(self) -> bool:
+        """Always."""
+        return True
+
+    def read(self, signal: pl.DataFrame) -> Reading:
+        """Value and the middle of its window."""
+        if self.about_mean:
+            return self._largest(self._slide(signal, "std"))
+        squares = self._slide(signal.with_columns(pl.col("x") ** 2), "mean")
+        return self._largest(squares.with_columns(pl.col("x").sqrt()))
 
 
 class MaxAbs(Statistic):

@@ -18,7 +18,11 @@ t = k * step does not drop a sample at a window's end."""
 
 
 def slide(
-    signal: pl.DataFrame, function: Literal["min", "max", "mean"], *, over: Literal["t", "s"], length: float
+    signal: pl.DataFrame,
+    function: Literal["min", "max", "mean", "std"],
+    *,
+    over: Literal["t", "s"],
+    length: float,
 ) -> pl.DataFrame:
     """`t`, `s`, `x` of every full window: its middle, and the function of its samples."""
     column = signal.get_column(over)
@@ -36,6 +40,7 @@ def slide(
         "min": pl.col("x").rolling_min_by("tick", f"{ticks}i", closed="both"),
         "max": pl.col("x").rolling_max_by("tick", f"{ticks}i", closed="both"),
         "mean": pl.col("x").rolling_mean_by("tick", f"{ticks}i", closed="both"),
+        "std": pl.col("x").rolling_std_by("tick", f"{ticks}i", closed="both", ddof=0),
     }[function]
     middle = pl.col(other).rolling_mean_by("tick", f"{ticks}i", closed="both").alias(other)
     return (

@@ -33,6 +33,8 @@ class VehicleData:
     """The base track that the vehicle names."""
     condition: str | None
     conditions: tuple[str, ...]
+    design_condition: str | None
+    """The condition that a spec which names none is run in."""
     mass: float | None
     """kg, in the condition."""
     bodies: tuple[Any, ...]
@@ -83,8 +85,9 @@ def build(*, label: str, vehicle: VehicleData, track: Mapping[str, Any], run: Ma
         "track": dict(track),
         "run": dict(run),
     }
-    if vehicle.condition is not None:
-        data["condition"] = vehicle.condition
+    condition = vehicle.condition or vehicle.design_condition
+    if condition is not None:
+        data["condition"] = condition
     return Case(label, data)
 
 

@@ -1,0 +1,171 @@
+"""Bad input on the real core: one clear message with file, key and line, exit code 2, nothing written."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lmap.cli import app
+
+pytestmark = pytest.mark.needs_core
+ROOT = Path(__file__).parents[2]
+SPEC = "specs/hunting.toml"
+VEHICLE = "models/vehicles/coco134.toml"
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the project's models and specs, to be spoiled."""
+    for folder in ("models", "specs"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def messages(
+    place: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> Callable[..., list[str]]:
+    """What a check of a spec says on stderr; asserts that it left with 2 and wrote nothing."""
+
+    def run(*arguments: str) -> list[str]:
+        before = sorted(place.rglob("*"))
+        monkeypatch.setattr(sys, "argv", ["lmap", "check", *arguments, "--report", "out"])
+        with pytest.raises(SystemExit) as left:
+            app.main()
+        out, err = capfd.readouterr()
+        assert (left.value.code, out) == (2, "")
+        assert sorted(place.rglob("*")) == before
+        return err.splitlines()
+
+    return run
+
+
+def spoil(path: str, old: str, new: str) -> int:
+    """Replaces the first occurrence in a file; the line where it is."""
+    file = Path(path)
+    text = file.read_text(encoding="utf-8")
+    assert old in text, f"{old} is not in {path}"
+    file.write_text(text.replace(old, new, 1), encoding="utf-8")
+    return text[: text.index(old)].count("\n") + 1
+
+
+def line_of(path: str, text: str) -> int:
+    content = Path(path).read_text(encoding="utf-8")
+    return content[: content.index(text)].count("\n") + 1
+
+
+def test_a_missing_file(messages: Callable[..., list[str]]) -> None:
+    assert messages("specs/hunt.toml") == [
+        "lmap: specs/hunt.toml: found no such file; allowed: a spec file or folder"
+    ]
+
+
+def test_a_toml_syntax_error(messages: Callable[..., list[str]]) -> None:
+    line = spoil(SPEC, "friction = 0.4", "friction = = 0.4")
+    [message] = messages(SPEC)
+    assert message.startswith(f"lmap: {SPEC}:{line}: found ")
+
+
+def test_an_unknown_key_of_the_core_with_the_nearest_known_one(messages: Callable[..., list[str]]) -> None:
+    line = spoil(SPEC, "output_step", "outputstep")
+    found = messages(SPEC)
+    assert any(
+        message.startswith(f"lmap: {SPEC}:{line}: run.outputstep: found ") and "mean output_step?" in message
+        for message in found
+    ), found
+
+
+def test_an_unknown_key_inside_a_tagged_table(messages: Callable[..., list[str]]) -> None:
+    line = spoil(SPEC, "seed = 1", "sede = 1")
+    found = messages(SPEC)
+    assert any(
+        message.startswith(f"lmap: {SPEC}:{line}: track.irregularity.sede: found ") and "seed" in message
+        for message in found
+    ), found
+
+
+def test_an_unknown_key_of_the_spec(messages: Callable[..., list[str]]) -> None:
+    line = spoil(SPEC, "condition =", "conditon =")
+    [message] = messages(SPEC)
+    assert message.startswith(f'lmap: {SPEC}:{line}: conditon: found an unknown key "conditon"; allowed: ')
+    assert message.endswith('(did you mean "condition"?)')
+
+
+def test_a_negative_mass(messages: Callable[..., list[str]]) -> None:
+    line = spoil(VEHICLE, "mass = 14860.0", "mass = -14860.0")
+    found = messages(SPEC)
+    assert all(message.startswith(f"lmap: {VEHICLE}:") and "-14860" in message for message in found), found
+    # one message where the number is used, or one where it stands
+    assert 1 <= len(found) <= 2
+    assert any("mass" in message for message in found)
+    assert line > 0
+
+
+def test_a_connection_to_a_body_that_does_not_exist(messages: Callable[..., list[str]]) -> None:
+    line = spoil(VEHICLE, 'between = ["{bogie}", "carbody"]', 'between = ["{bogie}", "carbdoy"]')
+    found = messages(SPEC)
+    assert all(
+        message.startswith(f"lmap: {VEHICLE}:{line}: ") and "carbdoy" in message for message in found
+    ), found
+    assert found
+    assert all("carbody" in message for message in found), found
+
+
+def test_a_profile_with_three_points(messages: Callable[..., list[str]]) -> None:
+    profile = "models/profiles/anzr1_worn_1.csv"
+    Path(profile).write_text("# three points\n-10.0,0.0\n0.0,0.0\n10.0,0.0\n", encoding="utf-8")
+    [message] = messages(SPEC)
+    assert message.startswith(f"lmap: {profile}: profiles.anzr1_worn_1")
+    assert "3 points" in message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ('speed = "110% design"', "speed = 0.0", "run.speed"),
+        ('speed = "110% design"', "speed_kmh = 0", "run.speed_kmh"),
+        ('speed = "110% design"', 'speed = "0% design"', "run.speed"),
+    ],
+)
+def test_a_speed_of_zero(messages: Callable[..., list[str]], old: str, new: str, key: str) -> None:
+    line = spoil(SPEC, old, new)
+    [message] = messages(SPEC)
+    assert message.startswith(f"lmap: {SPEC}:{line}: {key}: found ")
+    assert "a number > 0" in message
+
+
+def test_a_criterion_on_a_channel_that_does_not_exist(messages: Callable[..., list[str]]) -> None:
+    line = spoil(SPEC, '"carbody.trail_pivot.ay"', '"carbody.trial_pivot.ay"')
+    [message] = messages(SPEC)
+    assert message == (
+        f'lmap: {SPEC}:{line}: criterion[0].signal[1]: found "carbody.trial_pivot.ay"; allowed: a channel of the '
+        'vehicle (`lmap channels VEHICLE` lists them) (did you mean "carbody.trail_pivot.ay"?)'
+    )
+
+
+def test_an_unknown_parameter_of_the_vehicle(messages: Callable[..., list[str]]) -> None:
+    [message] = messages(SPEC, "--set", "secondry.kz=5e5")
+    assert message.startswith(f"lmap: {SPEC}: --set secondry.kz: found ")
+    assert "secondary.kz" in message
+
+
+def test_a_unit_of_another_quantity(messages: Callable[..., list[str]]) -> None:
+    spoil(SPEC, 'unit = "g"', 'unit = "mm"')
+    [message] = messages(SPEC)
+    assert message.startswith(
+        f"lmap: {SPEC}:{line_of(SPEC, 'unit = ' + chr(34) + 'mm')}: criterion[0].unit: "
+    )
+
+
+def test_every_message_of_several_specs(messages: Callable[..., list[str]]) -> None:
+    shutil.copy(SPEC, "specs/other.toml")
+    spoil(SPEC, "friction = 0.4", "friction = -0.4")
+    spoil("specs/other.toml", 'procedure = "hunting"', 'procedure = "huntign"')
+    found = messages("specs")
+    assert [message.split(":")[1].strip() for message in found] == [SPEC, "specs/other.toml"]
+    assert found[1].endswith('found "huntign"; allowed: hunting (did you mean "hunting"?)')

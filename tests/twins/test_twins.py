@@ -1,0 +1,62 @@
+"""Every spec has a bad twin, and the twin fails for the criterion that it says."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lmap
+from lmap.spec.model import Spec
+from lmap.verdict import Outcome
+
+ROOT = Path(__file__).parents[2]
+SPECS = sorted((ROOT / "specs").glob("*.toml"))
+TWINS = sorted(Path(__file__).parent.glob("*.toml"))
+KEYS = {"spec", "must_fail", "set"}
+
+
+def read(path: Path) -> dict[str, Any]:
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def test_there_are_specs() -> None:
+    assert SPECS
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda path: path.stem)
+def test_every_spec_has_a_twin(spec: Path) -> None:
+    assert spec.stem in [twin.stem for twin in TWINS]
+
+
+@pytest.mark.parametrize("twin", TWINS, ids=lambda path: path.stem)
+def test_a_twin_names_its_spec_and_one_of_its_judged_criteria(twin: Path) -> None:
+    written = read(twin)
+    assert set(written) == KEYS
+    assert written["spec"] == twin.stem
+    spec = Spec.model_validate(read(ROOT / "specs" / f"{twin.stem}.toml"))
+    judged = [criterion.name for criterion in spec.criterion if criterion.bounds]
+    assert written["must_fail"] in judged
+
+
+@pytest.mark.slow
+@pytest.mark.needs_core
+@pytest.mark.parametrize("twin", TWINS, ids=lambda path: path.stem)
+def test_the_twin_fails_for_its_criterion(twin: Path) -> None:
+    written = read(twin)
+    acceptance = lmap.check(ROOT / "specs" / f"{written['spec']}.toml", set=written["set"])
+    [spec] = acceptance.specs
+    found = [f"{one.case}: {one.name}: {one.value} {one.unit}, {one.outcome}" for one in spec.criteria]
+    assert acceptance.exit_code == 1, found
+    failed = {criterion.name for criterion in spec.criteria if criterion.outcome is Outcome.FAIL}
+    assert written["must_fail"] in failed, found
+
+
+@pytest.mark.slow
+@pytest.mark.needs_core
+@pytest.mark.parametrize("twin", TWINS, ids=lambda path: path.stem)
+def test_the_good_one_passes(twin: Path) -> None:
+    acceptance = lmap.check(ROOT / "specs" / f"{twin.stem}.toml")
+    assert acceptance.exit_code == 0
