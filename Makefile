@@ -37,7 +37,7 @@ $(MODULE): $(SITE) $(RUST)
 	touch $@
 
 test: dev
-	cargo test --quiet
+	cargo test --quiet --no-fail-fast
 	$(BIN)/pytest -m 'not slow' --benchmark-disable
 
 check: format lint types architecture rust pytest
@@ -58,7 +58,7 @@ architecture:
 	bash .ci/architecture
 
 rust:
-	cargo test --quiet
+	cargo test --quiet --no-fail-fast
 
 pytest: dev
 	$(BIN)/pytest --benchmark-disable

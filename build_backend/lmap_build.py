@@ -64,7 +64,7 @@ def _data() -> Iterator[None]:
         for folder in FOLDERS:
             if not (ROOT / folder).is_dir():
                 raise FileNotFoundError(f"{ROOT / folder}: the package needs this folder")
-            shutil.copytree(ROOT / folder, DATA / folder)
+            shutil.copytree(ROOT / folder, DATA / folder, ignore=shutil.ignore_patterns("__pycache__"))
         yield
     finally:
         _remove()
