@@ -89,7 +89,9 @@ fn a_thrown_body_keeps_its_inertial_parabola_and_angular_momentum() {
     // Within one segment each: a clothoid on which curvature, cant and gradient all change, then a canted, graded curve.
     for (s, duration) in [(22.0, 1.3), (85.0, 2.0), (183.0, 1.3), (245.0, 3.0)] {
         let (worst, drift) = throw(s, 0.001, duration);
-        println!("thrown at {s} m for {duration} s: {worst:.2e} m off the parabola, angular momentum drift {drift:.2e}");
+        println!(
+            "thrown at {s} m for {duration} s: {worst:.2e} m off the parabola, angular momentum drift {drift:.2e}"
+        );
         // Rounding of 1e2 m over a few thousand fourth-order steps.
         assert!(worst < 1e-9, "{worst}");
         assert!(drift < 1e-11, "{drift}");

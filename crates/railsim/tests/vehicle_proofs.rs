@@ -102,8 +102,7 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
     // centre against the contacts: lambda (1 + (R + r0) lambda / l0), and ds psi = dy (1 + lambda r0 / l0).
     let (head, l0) = (0.3, half + 0.0017);
     let along = conicity / l0;
-    let refined =
-        klingel * ((l0 / half) * (1.0 + radius * along) / (1.0 + (head + radius) * along)).sqrt();
+    let refined = klingel * ((l0 / half) * (1.0 + radius * along) / (1.0 + (head + radius) * along)).sqrt();
     println!("with the rail head's radius: {refined:.4} m ({:+.3} %)", 100.0 * (measured / refined - 1.0));
     assert!((measured / refined - 1.0).abs() < 1e-3);
 }

@@ -17,7 +17,7 @@ pub mod pose;
 pub mod rigid_body;
 pub mod wheelset;
 
-pub use pose::{Pose, Wrench};
+pub use pose::{Pose, Relative, Wrench};
 pub use rigid_body::RigidBody;
 pub use wheelset::Wheelset;
 
@@ -86,20 +86,29 @@ impl Kinematics {
     }
 }
 
-/// `dq/dt` from the quasi-velocities, and the kinematics on the way.
+/// `dq/dt` from the quasi-velocities, and the kinematics on the way, written into `k`.
 ///
-/// `spins` is true for a wheelset, whose axes carry yaw and roll but not its spin.
+/// `spins` is true for a wheelset, whose axes carry yaw and roll but not its spin; `level` where the track frame is known
+/// to be inertial axes moved along x, which saves the turning.
 #[inline]
-pub(crate) fn kinematics(q: &[f64], u: &[f64], frame: Frame, spins: bool, dq: &mut [f64]) -> Kinematics {
+pub(crate) fn kinematics(
+    q: &[f64],
+    u: &[f64],
+    frame: Frame,
+    spins: bool,
+    level: bool,
+    dq: &mut [f64],
+    k: &mut Kinematics,
+) {
     let (y, z) = (q[1], q[2]);
     let v_T = Vec3::new(u[0], u[1], u[2]);
     let w_B = Vec3::new(u[3], u[4], u[5]);
-    let k = frame.k_T;
     // v_T = ds/dt (e_x + k x p) + (0, dy/dt, dz/dt), p = (0, y, z)
-    let s_dot = v_T.x / (1.0 + k.y * z - k.z * y);
+    let turn = frame.k_T;
+    let s_dot = if level { v_T.x } else { v_T.x / (1.0 + turn.y * z - turn.z * y) };
     dq[0] = s_dot;
-    dq[1] = v_T.y + s_dot * k.x * z;
-    dq[2] = v_T.z - s_dot * k.x * y;
+    dq[1] = v_T.y + s_dot * turn.x * z;
+    dq[2] = v_T.z - s_dot * turn.x * y;
 
     let (sin_phi, cos_phi) = angle::small(q[3]);
     let (sin_psi, cos_psi) = angle::small(q[5]);
@@ -115,36 +124,36 @@ pub(crate) fn kinematics(q: &[f64], u: &[f64], frame: Frame, spins: bool, dq: &m
         sin_phi,
         cos_phi,
     );
-    let w_T = s_dot * k;
     let (R_TB, w_A) = if spins {
         (R_TA, w_B)
     } else {
         let (s, c) = angle::small(q[4]);
-        let R_AB = Mat3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c);
-        (R_TA * R_AB, R_AB * w_B)
+        // R_TA Ry(theta): x and z columns turned into each other.
+        let (x, z) = (R_TA.column(0), R_TA.column(2));
+        let R_TB = Mat3::from_columns(&[c * x - s * z, R_TA.column(1).into(), s * x + c * z]);
+        (R_TB, Vec3::new(c * w_B.x + s * w_B.z, w_B.y, c * w_B.z - s * w_B.x))
     };
-    let relative = w_A - R_TA.tr_mul(&w_T);
+    let relative = if level { w_A } else { w_A - R_TA.tr_mul(&(s_dot * turn)) };
     let psi_dot = relative.z / cos_phi;
     dq[3] = relative.x;
     dq[4] = relative.y - psi_dot * sin_phi;
     dq[5] = psi_dot;
     let w_axes = if spins { w_A - Vec3::new(0.0, dq[4], 0.0) } else { w_B };
 
-    let R_IB = frame.R_IT * R_TB;
-    Kinematics {
-        frame,
-        s_dot,
-        pose: Pose {
-            r: frame.r_IT + frame.R_IT * Vec3::new(0.0, y, z),
-            R: R_IB,
-            v: frame.R_IT * v_T,
-            w: R_IB * w_axes,
-        },
-        R_TB,
-        v_T,
-        w_B,
-        w_axes,
-    }
+    k.pose = if level {
+        let r = Vec3::new(frame.r_IT.x, y, z);
+        Pose { r, R: R_TB, v: v_T, w: R_TB * w_axes }
+    } else {
+        let R = frame.R_IT * R_TB;
+        let r = frame.r_IT + frame.R_IT * Vec3::new(0.0, y, z);
+        Pose { r, R, v: frame.R_IT * v_T, w: R * w_axes }
+    };
+    k.frame = frame;
+    k.s_dot = s_dot;
+    k.R_TB = R_TB;
+    k.v_T = v_T;
+    k.w_B = w_B;
+    k.w_axes = w_axes;
 }
 
 /// Quasi-velocities of a body that stays where it is in its track frame while that moves at `s_dot`; `spin` is the

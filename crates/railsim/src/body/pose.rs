@@ -47,3 +47,31 @@ impl Wrench {
         self.m += lever.cross(f);
     }
 }
+
+/// Motion of body B as seen from body A, in A's axes: all that a force between the two can depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct Relative {
+    /// B's centre of mass from A's, m.
+    pub r_AB: Vec3,
+    /// B's axes to A's axes.
+    pub R_AB: Mat3,
+    /// Rate of `r_AB` as A sees it, m/s.
+    pub v_AB: Vec3,
+    /// Angular velocity of B against A, rad/s.
+    pub w_AB: Vec3,
+}
+
+impl Relative {
+    /// Of two bodies.
+    #[inline]
+    #[must_use]
+    pub fn between(a: &Pose, b: &Pose) -> Self {
+        let apart = b.r - a.r;
+        Self {
+            r_AB: a.R.tr_mul(&apart),
+            R_AB: a.R.tr_mul(&b.R),
+            v_AB: a.R.tr_mul(&(b.v - a.v - a.w.cross(&apart))),
+            w_AB: a.R.tr_mul(&(b.w - a.w)),
+        }
+    }
+}

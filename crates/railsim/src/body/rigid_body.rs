@@ -16,11 +16,15 @@ pub struct RigidBody {
     pub position: Vec3,
 }
 
-/// Linear part: `dv_T/dt = R_IT' F / m - w_T x v_T`. `wrench.f` holds all forces with weight, inertial axes.
+/// Linear part: `dv_T/dt = R_IT' F / m - w_T x v_T`. `wrench.f` holds all forces with weight, inertial axes; `level` as in
+/// `kinematics`.
 #[inline]
-pub(crate) fn translate(k: &Kinematics, mass: f64, wrench: &Wrench, du: &mut [f64]) {
-    let w_T = k.s_dot * k.frame.k_T;
-    let a = k.frame.R_IT.tr_mul(&wrench.f) / mass - w_T.cross(&k.v_T);
+pub(crate) fn translate(k: &Kinematics, mass: f64, wrench: &Wrench, level: bool, du: &mut [f64]) {
+    let a = if level {
+        wrench.f / mass
+    } else {
+        k.frame.R_IT.tr_mul(&wrench.f) / mass - (k.s_dot * k.frame.k_T).cross(&k.v_T)
+    };
     du[..3].copy_from_slice(a.as_slice());
 }
 

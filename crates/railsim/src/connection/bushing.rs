@@ -17,7 +17,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ForceLaw, Mount, Pair, Pose, Wrench, not_negative};
+use super::{ForceLaw, Mount, Relative, Wrench, not_negative};
 use crate::error::{Fault, KeyPath};
 use crate::math::Vec3;
 
@@ -44,10 +44,18 @@ fn scale(k: &[f64; 3], d: &Vec3) -> Vec3 {
     Vec3::new(k[0] * d.x, k[1] * d.y, k[2] * d.z)
 }
 
-/// Relative rotation of B from A as a vector in A's axes (antisymmetric part of `R_A' R_B`).
-fn relative_rotation(a: &Pose, b: &Pose) -> Vec3 {
-    let R = a.R.transpose() * b.R;
+/// Relative rotation of B from A as a vector in A's axes (antisymmetric part of `R_AB`).
+fn turned(motion: &Relative) -> Vec3 {
+    let R = &motion.R_AB;
     0.5 * Vec3::new(R[(2, 1)] - R[(1, 2)], R[(0, 2)] - R[(2, 0)], R[(1, 0)] - R[(0, 1)])
+}
+
+/// `d` and its rate in A's axes and in B's.
+struct Stretch {
+    d_A: Vec3,
+    rate_A: Vec3,
+    d_B: Vec3,
+    rate_B: Vec3,
 }
 
 impl Bushing {
@@ -70,69 +78,50 @@ impl Bushing {
         ]
     }
 
-    /// Vector between the points and the levers of both points from both centres of mass.
     #[inline]
-    fn arms(a: &Pose, b: &Pose, mount: &Mount) -> (Vec3, Vec3, Vec3) {
-        let q_A = a.R * mount.p_A;
-        let q_B = b.R * mount.p_B;
-        (b.r + q_B - a.r - q_A, q_A, q_B)
-    }
-
-    /// Rates of `D` at B's point seen from A and at A's point seen from B, inertial axes.
-    #[inline]
-    fn rates(a: &Pose, b: &Pose, D: &Vec3, q_A: &Vec3, q_B: &Vec3) -> (Vec3, Vec3) {
-        let v = b.v + b.w.cross(q_B) - a.v - a.w.cross(q_A);
-        (v - a.w.cross(D), v - b.w.cross(D))
+    fn stretch(motion: &Relative, mount: &Mount) -> Stretch {
+        let q_B = motion.R_AB * mount.p_B;
+        let d_A = motion.r_AB + q_B - mount.p_A;
+        let rate_A = motion.v_AB + motion.w_AB.cross(&q_B);
+        let d_B = motion.R_AB.tr_mul(&d_A);
+        let rate_B = motion.R_AB.tr_mul(&(rate_A - motion.w_AB.cross(&d_A)));
+        Stretch { d_A, rate_A, d_B, rate_B }
     }
 }
 
 impl ForceLaw for Bushing {
     #[inline]
-    fn wrench(&self, a: &Pose, b: &Pose, mount: &Mount) -> Pair {
-        let (D, q_A, q_B) = Self::arms(a, b, mount);
-        let (v_A, v_B) = Self::rates(a, b, &D, &q_A, &q_B);
-        let half = |pose: &Pose, v: &Vec3| {
-            let d = pose.R.tr_mul(&D);
-            let rate = pose.R.tr_mul(v);
-            0.5 * (pose.R * (mount.preload - scale(&self.stiffness, &d) - scale(&self.damping, &rate)))
+    fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
+        let s = Self::stretch(motion, mount);
+        let half = |d: &Vec3, rate: &Vec3| {
+            0.5 * (mount.preload - scale(&self.stiffness, d) - scale(&self.damping, rate))
         };
-        let f_A = half(a, &v_A); // written in A's axes, acts at B's point
-        let f_B = half(b, &v_B); // written in B's axes, acts at A's point
+        let f_A = half(&s.d_A, &s.rate_A); // written in A's axes, acts at B's point
+        let f_B = motion.R_AB * half(&s.d_B, &s.rate_B); // written in B's axes, acts at A's point
         let f = f_A + f_B;
-        // (q_A + D) x f_A + q_A x f_B, and what balances it about any point.
-        let m = q_A.cross(&f) + D.cross(&f_A);
-        let mut on_A = Wrench { f: -f, m: -m };
-        let mut on_B = Wrench { f, m: m - (b.r - a.r).cross(&f) };
-        if self.rotational_stiffness.is_some() || self.rotational_damping.is_some() {
-            let k = self.rotational_stiffness.unwrap_or_default();
-            let c = self.rotational_damping.unwrap_or_default();
-            let rate = a.R.tr_mul(&(b.w - a.w));
-            let m = a.R * (scale(&k, &relative_rotation(a, b)) + scale(&c, &rate));
-            on_A.m += m;
-            on_B.m -= m;
+        let mut wrench = Wrench { f, m: mount.p_A.cross(&f) + s.d_A.cross(&f_A) };
+        if let Some(k) = &self.rotational_stiffness {
+            wrench.m -= scale(k, &turned(motion));
         }
-        Pair { on_A, on_B }
+        if let Some(c) = &self.rotational_damping {
+            wrench.m -= scale(c, &motion.w_AB);
+        }
+        wrench
     }
 
-    fn energy(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64 {
-        let (D, _, _) = Self::arms(a, b, mount);
-        let half = |pose: &Pose| {
-            let d = pose.R.tr_mul(&D);
-            0.5 * (0.5 * d.dot(&scale(&self.stiffness, &d)) - mount.preload.dot(&d))
-        };
-        let turn = relative_rotation(a, b);
+    fn energy(&self, motion: &Relative, mount: &Mount) -> f64 {
+        let s = Self::stretch(motion, mount);
+        let half = |d: &Vec3| 0.5 * (0.5 * d.dot(&scale(&self.stiffness, d)) - mount.preload.dot(d));
+        let turn = turned(motion);
         let k = self.rotational_stiffness.unwrap_or_default();
-        half(a) + half(b) + 0.5 * turn.dot(&scale(&k, &turn))
+        half(&s.d_A) + half(&s.d_B) + 0.5 * turn.dot(&scale(&k, &turn))
     }
 
-    fn dissipation(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64 {
-        let (D, q_A, q_B) = Self::arms(a, b, mount);
-        let (v_A, v_B) = Self::rates(a, b, &D, &q_A, &q_B);
-        let (d_A, d_B) = (a.R.tr_mul(&v_A), b.R.tr_mul(&v_B));
-        let turn = a.R.tr_mul(&(b.w - a.w));
+    fn dissipation(&self, motion: &Relative, mount: &Mount) -> f64 {
+        let s = Self::stretch(motion, mount);
+        let lost = |rate: &Vec3| 0.5 * rate.dot(&scale(&self.damping, rate));
         let c = self.rotational_damping.unwrap_or_default();
-        0.5 * (d_A.dot(&scale(&self.damping, &d_A)) + d_B.dot(&scale(&self.damping, &d_B)))
-            + turn.dot(&scale(&c, &turn))
+        lost(&s.rate_A) + lost(&s.rate_B) + motion.w_AB.dot(&scale(&c, &motion.w_AB))
     }
 
     fn nominal_stiffness(&self, _between: &Vec3) -> Vec3 {

@@ -15,9 +15,9 @@ pub use point_spring::PointSpring;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use crate::body::{Pose, Wrench};
+pub use crate::body::{Pose, Relative, Wrench};
 use crate::error::{Fault, KeyPath};
-use crate::math::Vec3;
+use crate::math::{Mat3, Vec3};
 
 /// Where a connection is fixed, and what it carries in the design position.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +30,7 @@ pub struct Mount {
     pub preload: Vec3,
 }
 
-/// What a law does to its two ends.
+/// What a law does to its two ends, inertial axes.
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
     /// On body A.
@@ -39,14 +39,29 @@ pub struct Pair {
     pub on_B: Wrench,
 }
 
-/// The contract of a force law. `a` and `b` are the motions of the two bodies.
+impl Pair {
+    /// From the wrench on B about A's centre of mass in A's axes, as [`ForceLaw::wrench`] gives it.
+    #[inline]
+    #[must_use]
+    pub fn new(on_B_about_A: &Wrench, motion: &Relative, R_IA: &Mat3) -> Self {
+        let f = R_IA * on_B_about_A.f;
+        let m = on_B_about_A.m;
+        Self {
+            on_A: Wrench { f: -f, m: -(R_IA * m) },
+            on_B: Wrench { f, m: R_IA * (m - motion.r_AB.cross(&on_B_about_A.f)) },
+        }
+    }
+}
+
+/// The contract of a force law. It knows the motion of body B as seen from body A, in A's axes, and nothing else: so it
+/// cannot depend on where the two are, and gives equal and opposite forces with balanced moments by construction.
 pub trait ForceLaw {
-    /// Wrenches on both ends.
-    fn wrench(&self, a: &Pose, b: &Pose, mount: &Mount) -> Pair;
+    /// Force on B (N) and its moment about A's centre of mass (N m), in A's axes; on A the opposite.
+    fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench;
     /// Stored energy, J, zero in the design position; the preload's work is part of it.
-    fn energy(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64;
+    fn energy(&self, motion: &Relative, mount: &Mount) -> f64;
     /// Dissipated power, W, never negative.
-    fn dissipation(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64;
+    fn dissipation(&self, motion: &Relative, mount: &Mount) -> f64;
     /// Translational stiffness in the design position along the bodies' axes, N/m, with which preloads are shared out.
     fn nominal_stiffness(&self, between: &Vec3) -> Vec3;
     /// Parameters outside their range, by key below `at`.
@@ -80,16 +95,16 @@ macro_rules! each {
 
 impl ForceLaw for Law {
     #[inline]
-    fn wrench(&self, a: &Pose, b: &Pose, mount: &Mount) -> Pair {
-        each!(self, law => law.wrench(a, b, mount))
+    fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
+        each!(self, law => law.wrench(motion, mount))
     }
 
-    fn energy(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64 {
-        each!(self, law => law.energy(a, b, mount))
+    fn energy(&self, motion: &Relative, mount: &Mount) -> f64 {
+        each!(self, law => law.energy(motion, mount))
     }
 
-    fn dissipation(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64 {
-        each!(self, law => law.dissipation(a, b, mount))
+    fn dissipation(&self, motion: &Relative, mount: &Mount) -> f64 {
+        each!(self, law => law.dissipation(motion, mount))
     }
 
     fn nominal_stiffness(&self, between: &Vec3) -> Vec3 {

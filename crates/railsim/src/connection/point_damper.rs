@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::point_spring::{line, tension};
-use super::{ForceLaw, Mount, Pair, Pose, not_negative};
+use super::{ForceLaw, Mount, Relative, Wrench, not_negative};
 use crate::error::{Fault, KeyPath};
 use crate::math::Vec3;
 
@@ -24,25 +24,25 @@ impl PointDamper {
     }
 
     #[inline]
-    fn rate(a: &Pose, b: &Pose, q_A: &Vec3, q_B: &Vec3, e: &Vec3) -> f64 {
-        (b.v + b.w.cross(q_B) - a.v - a.w.cross(q_A)).dot(e)
+    fn rate(motion: &Relative, q_B: &Vec3, e: &Vec3) -> f64 {
+        (motion.v_AB + motion.w_AB.cross(q_B)).dot(e)
     }
 }
 
 impl ForceLaw for PointDamper {
     #[inline]
-    fn wrench(&self, a: &Pose, b: &Pose, mount: &Mount) -> Pair {
-        let (q_A, q_B, e, _) = line(a, b, mount);
-        tension(self.damping * Self::rate(a, b, &q_A, &q_B, &e), &e, &q_A, &q_B)
+    fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
+        let (q_B, e, _) = line(motion, mount);
+        tension(self.damping * Self::rate(motion, &q_B, &e), &e, mount)
     }
 
-    fn energy(&self, _a: &Pose, _b: &Pose, _mount: &Mount) -> f64 {
+    fn energy(&self, _motion: &Relative, _mount: &Mount) -> f64 {
         0.0
     }
 
-    fn dissipation(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64 {
-        let (q_A, q_B, e, _) = line(a, b, mount);
-        let rate = Self::rate(a, b, &q_A, &q_B, &e);
+    fn dissipation(&self, motion: &Relative, mount: &Mount) -> f64 {
+        let (q_B, e, _) = line(motion, mount);
+        let rate = Self::rate(motion, &q_B, &e);
         self.damping * rate * rate
     }
 

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ForceLaw, Mount, Pair, Pose, Wrench, not_negative};
+use super::{ForceLaw, Mount, Relative, Wrench, not_negative};
 use crate::error::{Fault, KeyPath};
 use crate::math::Vec3;
 
@@ -18,23 +18,22 @@ pub struct PointSpring {
     pub length: f64,
 }
 
-/// Line between the ends: levers, unit vector from A's point to B's, length.
+/// Line between the ends, A's axes: B's lever from B's centre, unit vector from A's point to B's, length.
 #[inline]
-pub(super) fn line(a: &Pose, b: &Pose, mount: &Mount) -> (Vec3, Vec3, Vec3, f64) {
-    let q_A = a.R * mount.p_A;
-    let q_B = b.R * mount.p_B;
-    let D = b.r + q_B - a.r - q_A;
+pub(super) fn line(motion: &Relative, mount: &Mount) -> (Vec3, Vec3, f64) {
+    let q_B = motion.R_AB * mount.p_B;
+    let D = motion.r_AB + q_B - mount.p_A;
     let length = D.norm();
     // Ends that meet have no line between them: no direction, so no force, until they part again.
     let e = if length > 0.0 { D / length } else { Vec3::zeros() };
-    (q_A, q_B, e, length)
+    (q_B, e, length)
 }
 
-/// Tension along the line as a pair of wrenches.
+/// Tension along the line as a wrench on B about A's centre.
 #[inline]
-pub(super) fn tension(force: f64, e: &Vec3, q_A: &Vec3, q_B: &Vec3) -> Pair {
-    let f = force * e;
-    Pair { on_A: Wrench { f, m: q_A.cross(&f) }, on_B: Wrench { f: -f, m: -q_B.cross(&f) } }
+pub(super) fn tension(force: f64, e: &Vec3, mount: &Mount) -> Wrench {
+    let f = -force * e;
+    Wrench { f, m: mount.p_A.cross(&f) }
 }
 
 impl PointSpring {
@@ -47,18 +46,18 @@ impl PointSpring {
 
 impl ForceLaw for PointSpring {
     #[inline]
-    fn wrench(&self, a: &Pose, b: &Pose, mount: &Mount) -> Pair {
-        let (q_A, q_B, e, length) = line(a, b, mount);
-        tension(mount.preload.x + self.stiffness * (length - self.length), &e, &q_A, &q_B)
+    fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
+        let (_, e, length) = line(motion, mount);
+        tension(mount.preload.x + self.stiffness * (length - self.length), &e, mount)
     }
 
-    fn energy(&self, a: &Pose, b: &Pose, mount: &Mount) -> f64 {
-        let (_, _, _, length) = line(a, b, mount);
+    fn energy(&self, motion: &Relative, mount: &Mount) -> f64 {
+        let (_, _, length) = line(motion, mount);
         let x = length - self.length;
         mount.preload.x * x + 0.5 * self.stiffness * x * x
     }
 
-    fn dissipation(&self, _a: &Pose, _b: &Pose, _mount: &Mount) -> f64 {
+    fn dissipation(&self, _motion: &Relative, _mount: &Mount) -> f64 {
         0.0
     }
 

@@ -38,11 +38,13 @@ mod tests {
         let (c, delta, rate, d) = (1.1e11, 7.3e-5, -0.02, 0.9);
         let n = hunt_crossley(c, delta, rate, d);
         let h = 1e-9;
-        let by_delta =
-            (hunt_crossley(c, delta + h, rate, d).force - hunt_crossley(c, delta - h, rate, d).force) / (2.0 * h);
+        let by_delta = (hunt_crossley(c, delta + h, rate, d).force
+            - hunt_crossley(c, delta - h, rate, d).force)
+            / (2.0 * h);
         let h = 1e-6;
-        let by_rate =
-            (hunt_crossley(c, delta, rate + h, d).force - hunt_crossley(c, delta, rate - h, d).force) / (2.0 * h);
+        let by_rate = (hunt_crossley(c, delta, rate + h, d).force
+            - hunt_crossley(c, delta, rate - h, d).force)
+            / (2.0 * h);
         assert!((n.stiffness - by_delta).abs() < 1e-6 * by_delta);
         assert!((n.damping - by_rate).abs() < 1e-6 * by_rate);
     }

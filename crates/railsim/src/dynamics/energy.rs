@@ -1,7 +1,7 @@
 //! Energy of the whole vehicle, for audits: kinetic, weight, connections, contacts, track.
 
 use crate::body::rigid_body::kinetic_energy;
-use crate::connection::ForceLaw;
+use crate::connection::{ForceLaw, Relative};
 use crate::dynamics::model::{Contact, Model};
 use crate::dynamics::rhs::VehicleSystem;
 use crate::dynamics::scratch::Wheel;
@@ -17,8 +17,8 @@ pub fn total(system: &VehicleSystem<'_>, t: f64, x: &[f64]) -> f64 {
         energy += kinetic_energy(k, body.mass, &body.inertia) - body.mass * model.gravity * k.pose.r.z;
     }
     for link in &model.links {
-        energy +=
-            link.law.energy(&scratch.kinematics[link.a].pose, &scratch.kinematics[link.b].pose, &link.mount);
+        let motion = Relative::between(&scratch.kinematics[link.a].pose, &scratch.kinematics[link.b].pose);
+        energy += link.law.energy(&motion, &link.mount);
     }
     for contact in scratch.wheels.iter().flatten().flat_map(Wheel::contacts) {
         let delta = contact.placed.penetration;

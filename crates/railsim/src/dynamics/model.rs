@@ -1,5 +1,7 @@
 //! The compiled model: immutable, shared between threads.
 
+use std::ops::Range;
+
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{Law, Mount};
 use crate::contact::creep::CreepLaw;
@@ -89,7 +91,7 @@ pub struct Model {
     pub bodies: Vec<RigidBody>,
     /// Wheelsets.
     pub wheelsets: Vec<Wheelset>,
-    /// Connections.
+    /// Connections, those between the same two bodies together.
     pub links: Vec<Link>,
     /// Named points.
     pub sensors: Vec<Sensor>,
@@ -106,6 +108,8 @@ pub struct Model {
     /// m/s2.
     pub gravity: f64,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
+    /// Runs of links between the same two bodies.
+    pub(crate) joints: Vec<Range<usize>>,
 }
 
 impl Model {
@@ -117,7 +121,7 @@ impl Model {
     pub fn new(
         bodies: Vec<RigidBody>,
         wheelsets: Vec<Wheelset>,
-        links: Vec<Link>,
+        mut links: Vec<Link>,
         sensors: Vec<Sensor>,
         speed_hold: Option<SpeedHold>,
         layout: Layout,
@@ -126,6 +130,14 @@ impl Model {
         contact: Contact,
         gravity: f64,
     ) -> Result<Self> {
+        links.sort_by_key(|l| (l.a, l.b));
+        let mut joints: Vec<Range<usize>> = Vec::new();
+        for (i, link) in links.iter().enumerate() {
+            match joints.last_mut() {
+                Some(run) if (links[run.start].a, links[run.start].b) == (link.a, link.b) => run.end = i + 1,
+                _ => joints.push(i..i + 1),
+            }
+        }
         let map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len() };
         let stiff_blocks = (0..wheelsets.len())
             .map(|w| {
@@ -145,6 +157,7 @@ impl Model {
             contact,
             gravity,
             stiff_blocks,
+            joints,
         })
     }
 

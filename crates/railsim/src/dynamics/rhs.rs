@@ -1,7 +1,7 @@
 //! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
 
 use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, wheelset};
-use crate::connection::ForceLaw;
+use crate::connection::{ForceLaw, Pair, Relative};
 use crate::contact::creep::{Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
 use crate::contact::geometry_table::ContactPoint;
@@ -51,6 +51,7 @@ pub struct VehicleSystem<'m> {
     /// False at standstill: contacts stick and creep forces are left out.
     pub creeping: bool,
     map: StateMap,
+    level: bool,
 }
 
 impl<'m> VehicleSystem<'m> {
@@ -64,6 +65,7 @@ impl<'m> VehicleSystem<'m> {
             irregular: true,
             creeping: true,
             map: model.map(),
+            level: model.layout.is_tangent(),
         }
     }
 
@@ -72,12 +74,12 @@ impl<'m> VehicleSystem<'m> {
             let q = &x[self.map.q(i)];
             let frame = self.model.layout.frame(q[0]);
             let spins = i >= self.model.bodies.len();
-            let k = kinematics(q, &x[self.map.u(i)], frame, spins, &mut dx[self.map.q(i)]);
+            let (u, k) = (&x[self.map.u(i)], &mut self.scratch.kinematics[i]);
+            kinematics(q, u, frame, spins, self.level, &mut dx[self.map.q(i)], k);
             self.scratch.wrench[i] = Wrench {
                 f: Vec3::new(0.0, 0.0, self.model.rigid(i).mass * self.model.gravity),
                 m: Vec3::zeros(),
             };
-            self.scratch.kinematics[i] = k;
         }
     }
 
@@ -127,13 +129,22 @@ impl<'m> VehicleSystem<'m> {
     }
 
     fn connection_stage(&mut self) {
-        let (poses, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
-        for link in &self.model.links {
-            let pair = link.law.wrench(&poses[link.a].pose, &poses[link.b].pose, &link.mount);
-            wrench[link.a].f += pair.on_A.f;
-            wrench[link.a].m += pair.on_A.m;
-            wrench[link.b].f += pair.on_B.f;
-            wrench[link.b].m += pair.on_B.m;
+        let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
+        for joint in &self.model.joints {
+            let links = &self.model.links[joint.clone()];
+            let (a, b) = (links[0].a, links[0].b);
+            let motion = Relative::between(&kinematics[a].pose, &kinematics[b].pose);
+            let mut sum = Wrench::zero();
+            for link in links {
+                let one = link.law.wrench(&motion, &link.mount);
+                sum.f += one.f;
+                sum.m += one.m;
+            }
+            let pair = Pair::new(&sum, &motion, &kinematics[a].pose.R);
+            wrench[a].f += pair.on_A.f;
+            wrench[a].m += pair.on_A.m;
+            wrench[b].f += pair.on_B.f;
+            wrench[b].m += pair.on_B.m;
         }
     }
 
@@ -152,7 +163,7 @@ impl<'m> VehicleSystem<'m> {
             let body = self.model.rigid(i);
             let (k, wrench) = (&self.scratch.kinematics[i], &self.scratch.wrench[i]);
             let du = &mut dx[self.map.u(i)];
-            rigid_body::translate(k, body.mass, wrench, du);
+            rigid_body::translate(k, body.mass, wrench, self.level, du);
             if i < first {
                 rigid_body::rotate(k, &body.inertia, &k.pose.R.tr_mul(&wrench.m), du);
             } else {
@@ -208,13 +219,24 @@ impl Axle<'_> {
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
                 wheel.lift(pose.shift);
                 let mut found = [ContactPoint::default(); 2];
-                let count =
-                    table.contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found).map_err(|_| pose)?;
+                let count = table
+                    .contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found)
+                    .map_err(|_| pose)?;
                 for point in &found[..count] {
                     let placed = place(
-                        sigma, point, &rail, pose.yaw, radius, self.q, self.k, &self.w_T, &self.track, self.speed,
+                        sigma,
+                        point,
+                        &rail,
+                        pose.yaw,
+                        radius,
+                        self.q,
+                        self.k,
+                        &self.w_T,
+                        &self.track,
+                        self.speed,
                     );
-                    let n = hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
+                    let n =
+                        hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
                     let normal = point.share * n.force;
                     let mut contact = ContactForce {
                         geometry: Some(*point),

@@ -38,12 +38,14 @@ impl Explicit {
         system.rhs(t, x, &mut self.slopes[0]);
         for (stage, row) in a.iter().enumerate() {
             let (known, rest) = self.slopes.split_at_mut(stage + 1);
-            add(&mut self.argument, x, h, row, known);
+            self.argument.copy_from_slice(x);
+            for (k, weight) in known.iter().zip(*row).filter(|(_, weight)| **weight != 0.0) {
+                add(&mut self.argument, h * weight, k);
+            }
             system.rhs(t + c[stage + 1] * h, &self.argument, &mut rest[0]);
         }
-        for (i, value) in x.iter_mut().enumerate() {
-            let increment: f64 = self.slopes.iter().zip(*b).map(|(k, weight)| weight * k[i]).sum();
-            *value += h * increment;
+        for (k, weight) in self.slopes.iter().zip(*b) {
+            add(x, h * weight, k);
         }
         statistics.steps += 1;
         statistics.rhs_evaluations += c.len() as u64;
@@ -51,10 +53,9 @@ impl Explicit {
     }
 }
 
-/// `out = x + h sum weights * slopes`.
-fn add(out: &mut [f64], x: &[f64], h: f64, weights: &[f64], slopes: &[Vec<f64>]) {
-    for (i, value) in out.iter_mut().enumerate() {
-        let increment: f64 = slopes.iter().zip(weights).map(|(k, weight)| weight * k[i]).sum();
-        *value = x[i] + h * increment;
+/// `x += factor * slope`.
+fn add(x: &mut [f64], factor: f64, slope: &[f64]) {
+    for (value, k) in x.iter_mut().zip(slope) {
+        *value += factor * k;
     }
 }

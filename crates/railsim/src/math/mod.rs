@@ -1,7 +1,7 @@
 //! Mathematics without a rail word in it.
 
-pub mod elliptic;
 pub mod angle;
+pub mod elliptic;
 pub mod fft;
 pub mod hermite;
 pub mod quadrature;

@@ -95,7 +95,9 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
                     t: step as f64 * h,
                     s: x[reference],
                     body: model.wheelsets[block].body.name.clone(),
-                    cause: "the implicit step has no solution: a number that is not finite in wheel and track".into(),
+                    cause:
+                        "the implicit step has no solution: a number that is not finite in wheel and track"
+                            .into(),
                 });
             }
             if let Err(error) = divergence::check(&mut system, step as f64 * h, &x) {
@@ -145,7 +147,11 @@ fn smooth_start(model: &Model, start: f64) -> Result<()> {
             return Err(Error::input(
                 Fault::new(
                     KeyPath::of("track.fade_in"),
-                    format!("an irregularity of {:.2} mm under {} at the start", 1e3 * largest, set.body.name),
+                    format!(
+                        "an irregularity of {:.2} mm under {} at the start",
+                        1e3 * largest,
+                        set.body.name
+                    ),
                     "a length > 0 m over which the irregularity grows from nothing",
                 )
                 .hint("`fade_in = 50.0` fades it in over the first 50 m"),
