@@ -11,6 +11,8 @@
 //! The way of a run: [`schema`] (what was written) is compiled into a [`dynamics::Model`] (immutable,
 //! shared between threads), whose state is stepped by an [`integrator`] and recorded by [`run`].
 
+#![warn(clippy::unwrap_used)] // never on what a user wrote; tests may
+
 pub mod body;
 pub mod connection;
 pub mod contact;
