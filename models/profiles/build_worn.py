@@ -12,6 +12,7 @@ Each worn shape is anzr1 less two stated wear functions (mm, y outward, z down, 
 The result is shifted so that the running circle (y = 0) is z = 0 again, and resampled every 0.1 mm.
 """
 
+import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,11 +26,14 @@ ROOT = (1.5, 9.0)
 
 @dataclass(frozen=True)
 class Hollow:
+    """Bell-shaped loss of the tread, mm."""
+
     depth: float  # d
     centre: float  # c
     width: float  # w
 
     def loss(self, y: float) -> float:
+        """Depth of the wear at `y`, mm."""
         return self.depth * math.exp(-(((y - self.centre) / self.width) ** 2))
 
     def __str__(self) -> str:
@@ -39,12 +43,15 @@ class Hollow:
 
 @dataclass(frozen=True)
 class Flank:
+    """Even loss of the field side that fades towards the root, mm."""
+
     radius: float  # R
     centre: float  # c
     concave: float  # u
     convex: float  # v
 
     def loss(self, y: float) -> float:
+        """Depth of the wear at `y`, mm."""
         x = min(max(self.centre - y, 0.0), self.concave + self.convex)
         if x > self.concave:
             return self.concave / self.convex * (self.concave + self.convex - x) ** 2 / (2.0 * self.radius)
@@ -54,7 +61,8 @@ class Flank:
         depth = self.loss(self.centre)
         return (
             f"{depth:.2f} mm on the field side of y = {self.centre}, falling to 0 at y = "
-            f"{self.centre - self.concave - self.convex} (concave, radius {self.radius} mm, over {self.concave} mm, then convex)"
+            f"{self.centre - self.concave - self.convex} "
+            f"(concave, radius {self.radius} mm, over {self.concave} mm, then convex)"
         )
 
 
@@ -75,6 +83,7 @@ WORN: dict[str, Wear] = {
 
 
 def read(path: Path) -> Points:
+    """Points of a CSV profile, mm; lines that are no numbers are comments or headings."""
     points = []
     for line in path.read_text(encoding="utf-8").splitlines():
         fields = line.split(",")
@@ -89,7 +98,7 @@ def resample(points: Points, step: float) -> Points:
     """Points every `step` along the polyline."""
     out = [points[0]]
     carry = 0.0
-    for (y0, z0), (y1, z1) in zip(points, points[1:], strict=False):
+    for (y0, z0), (y1, z1) in itertools.pairwise(points):
         length = math.hypot(y1 - y0, z1 - z0)
         at = step - carry
         while at <= length:
@@ -100,30 +109,33 @@ def resample(points: Points, step: float) -> Points:
 
 
 def smootherstep(x: float) -> float:
+    """From 0 at 0 to 1 at 1, flat to the second derivative at both."""
     x = min(max(x, 0.0), 1.0)
     return x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
 
 
 def worn(new: Points, wear: Wear) -> Points:
+    """The worn shape of a new profile, mm, the running circle at z = 0 again."""
     moved = []
     for y, z in new:
         on_flange = smootherstep((z - ROOT[0]) / (ROOT[1] - ROOT[0]))
         moved.append((y - wear.flange * on_flange, z - wear.tread.loss(y) * (1.0 - on_flange)))
     zero = next(
         z0 + (z1 - z0) * (0.0 - y0) / (y1 - y0)
-        for (y0, z0), (y1, z1) in zip(moved, moved[1:], strict=False)
+        for (y0, z0), (y1, z1) in itertools.pairwise(moved)
         if y0 <= 0.0 < y1
     )
     return resample([(y, z - zero) for y, z in moved], 0.1)
 
 
 def main() -> None:
+    """Write every worn profile beside this file."""
     new = resample(read(HERE / "anzr1.csv"), 0.02)
     for name, wear in WORN.items():
         lines = [
             f"# {name}: {wear.meaning} shape of the SUBSTITUTE anzr1, built by build_worn.py; not measured.",
             f"# tread wear {wear.tread};",
-            f"# flange {wear.flange} mm thinner; the one fades into the other over the root, z = {ROOT[0]} to {ROOT[1]} mm.",
+            f"# flange {wear.flange} mm thinner; fading over the root, z = {ROOT[0]} to {ROOT[1]} mm.",
             "# mm; y outward (flange negative), z down; y = 0 running circle.",
             "y_mm,z_mm",
         ]

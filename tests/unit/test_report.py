@@ -67,7 +67,9 @@ def test_json_has_no_nan_and_no_clock() -> None:
 def test_json_depends_on_nothing_that_a_clock_gave() -> None:
     acceptance = sample.passing()
     spec = acceptance.specs[0]
-    cases = tuple(replace(case, wall_s=9.9, statistics={**case.statistics, "wall_s": 9.9}) for case in spec.cases)
+    cases = tuple(
+        replace(case, wall_s=9.9, statistics={**case.statistics, "wall_s": 9.9}) for case in spec.cases
+    )
     slower = replace(acceptance, wall_s=99.0, specs=(replace(spec, cases=cases),))
     assert to_json(slower) == to_json(acceptance)
     assert junit(slower) == junit(acceptance)
@@ -153,7 +155,9 @@ def test_terminal_of_a_diverged_run_says_why_once() -> None:
 
 
 def test_terminal_of_a_fail_and_of_what_waits() -> None:
-    assert "FAIL 2C.1 Hunting: 1 of 2 pass, 1 fail; smallest margin -" in " ".join(printed(sample.failing()).split())
+    assert "FAIL 2C.1 Hunting: 1 of 2 pass, 1 fail; smallest margin -" in " ".join(
+        printed(sample.failing()).split()
+    )
     waiting = printed(sample.waiting(Outcome.NOT_ASSESSED), 100)
     assert "NOT ASSESSED" in waiting
     assert "waits for a person's sign-off" in waiting

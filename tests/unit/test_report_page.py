@@ -201,7 +201,9 @@ def test_criterion_figure_shades_a_window_of_distance() -> None:
 
 def test_extreme_below_zero_is_marked_below_zero() -> None:
     case = sample.case("a")
-    table = case.frame.with_columns(pl.when(pl.col("t") == 5.0).then(-0.02).otherwise(pl.col("ws2.y")).alias("ws2.y"))
+    table = case.frame.with_columns(
+        pl.when(pl.col("t") == 5.0).then(-0.02).otherwise(pl.col("ws2.y")).alias("ws2.y")
+    )
     spec = sample.judged(replace(case, frame=table, quantities=table), criteria=(sample.SHIFT,))
     mark = figures(spec)[0].views[0].mark
     assert mark is not None
@@ -252,13 +254,17 @@ def test_registry_of_figures_is_sorted() -> None:
     assert modules == sorted(modules)
     folder = Path(__file__).parents[2] / "python" / "lmap" / "report" / "figures"
     kept = {"__init__", "channels", "envelope", "plot"}
-    assert {module.rsplit(".", 1)[1] for module in modules} == {path.stem for path in folder.glob("*.py")} - kept
+    assert {module.rsplit(".", 1)[1] for module in modules} == {
+        path.stem for path in folder.glob("*.py")
+    } - kept
 
 
 def test_track_irregularity_is_drawn_where_the_frame_has_it() -> None:
     case = sample.case("a")
     table = case.frame.with_columns((0.001 * pl.col("t").sin()).alias("track.cross_level"))
-    spec = sample.judged(replace(case, frame=table, quantities=table, units={**case.units, "track.cross_level": "m"}))
+    spec = sample.judged(
+        replace(case, frame=table, quantities=table, units={**case.units, "track.cross_level": "m"})
+    )
     (figure,) = [figure for figure in figures(spec) if figure.title == "Track irregularity"]
     assert figure.views[0].rows == ("cross level (mm)",)
 
@@ -298,7 +304,11 @@ def test_packed_curves_are_the_samples_in_single_precision() -> None:
 
 def folder_of(acceptance: Acceptance, folder: Path) -> dict[str, bytes]:
     write_report(acceptance, folder)
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
 
 
 def test_folder_holds_everything_and_no_leftovers(tmp_path: Path) -> None:

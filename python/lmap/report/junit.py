@@ -39,7 +39,9 @@ def _suite(spec: SpecVerdict) -> ET.Element:
 
 
 def _test(spec: SpecVerdict, criterion: CriterionVerdict) -> ET.Element:
-    test = ET.Element("testcase", classname=_text(spec.id), name=_text(f"{criterion.name} [{criterion.case}]"))
+    test = ET.Element(
+        "testcase", classname=_text(spec.id), name=_text(f"{criterion.name} [{criterion.case}]")
+    )
     summary = _summary(criterion)
     match criterion.outcome:
         case Outcome.PASS:
@@ -61,7 +63,9 @@ def _summary(criterion: CriterionVerdict) -> str:
         parts.append(f"on {criterion.signal}")
     if criterion.limit:
         parts.append(f"limit {with_unit(criterion.limit, criterion.unit)}")
-        parts.append(f"margin {signed(criterion.margin, criterion.unit)} ({percent(criterion.margin_percent)})")
+        parts.append(
+            f"margin {signed(criterion.margin, criterion.unit)} ({percent(criterion.margin_percent)})"
+        )
     else:
         parts.append("no limit: printed, not judged")
     parts.append(f"source {criterion.source}")

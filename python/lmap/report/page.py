@@ -51,7 +51,9 @@ def render(acceptance: Acceptance) -> bytes:
     from markupsafe import Markup
 
     templates = resources.files("lmap.report") / "templates"
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
     page = template.render(
         page=_page(acceptance),
@@ -97,7 +99,8 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "version": acceptance.version,
         "core": acceptance.core,
         "specs": [
-            _spec(position, spec, alone=len(acceptance.specs) == 1) for position, spec in enumerate(acceptance.specs)
+            _spec(position, spec, alone=len(acceptance.specs) == 1)
+            for position, spec in enumerate(acceptance.specs)
         ],
     }
 

@@ -111,7 +111,9 @@ def _facts(spec: SpecVerdict) -> Table:
     for title in ("shown beside", "case", "value", "paper"):
         grid.add_column(title, overflow="fold")
     for fact in spec.facts:
-        grid.add_row(Text(fact.name), Text(fact.case or "all"), Text(fact.value), Text(fact.published or number(None)))
+        grid.add_row(
+            Text(fact.name), Text(fact.case or "all"), Text(fact.value), Text(fact.published or number(None))
+        )
     return grid
 
 

@@ -14,7 +14,9 @@ Rows = Mapping[str, Sequence[str]]
 def stacked(spec: SpecVerdict, title: str, caption: str, rows: Mapping[str, Rows]) -> list[Figure]:
     """A figure whose views are the cases with rows (`rows` is by hash); none where no case has any."""
     views = [
-        _view(case, rows[case.hash]) for case in spec.cases if rows.get(case.hash) and "t" in samples(case).columns
+        _view(case, rows[case.hash])
+        for case in spec.cases
+        if rows.get(case.hash) and "t" in samples(case).columns
     ]
     return [Figure(title, caption, tuple(views))] if views else []
 

@@ -53,7 +53,9 @@ def draw(spec: SpecVerdict) -> list[Figure]:
 def chain_text(verdict: CriterionVerdict) -> str:
     """The chain as a line: signal, links with their parameters, limit."""
     parts = [_link_text(link) for link in verdict.chain]
-    parts.append(f"limit {with_unit(verdict.limit, verdict.unit)}" if verdict.limit else "no limit: shown, not judged")
+    parts.append(
+        f"limit {with_unit(verdict.limit, verdict.unit)}" if verdict.limit else "no limit: shown, not judged"
+    )
     return " → ".join(["signal", *parts])
 
 
@@ -79,7 +81,9 @@ def _views(verdict: CriterionVerdict, case: CaseResult | None) -> list[View]:
     if case is None:
         if verdict.message is None and not verdict.signals:
             return []
-        return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")]
+        return [
+            View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")
+        ]
     if not verdict.signals:
         return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "no signal is read")]
     try:
@@ -153,7 +157,9 @@ def _curves(signal: str, stages: Sequence[Stage], unit: str, colour: int) -> lis
     curves = []
     if filtered is not stages[0]:
         curves.append(
-            Curve(f"{signal}, unfiltered", stages[0].t, stages[0].values, "raw", unit, width=0.7, dash="solid")
+            Curve(
+                f"{signal}, unfiltered", stages[0].t, stages[0].values, "raw", unit, width=0.7, dash="solid"
+            )
         )
     label = f"{signal}, {filtered.name}" if filtered is not stages[0] else signal
     curves.append(Curve(label, filtered.t, filtered.values, str(colour), unit, width=1.5))
@@ -168,7 +174,9 @@ def _level(verdict: CriterionVerdict, stages: Sequence[Stage]) -> Curve:
     ends = stages[0].t[[0, -1]]
     name = str(next(iter(verdict.chain[-1])))
     values = np.full(2, verdict.value, dtype=np.float64)
-    return Curve(f"{name} {quantity(verdict.value, verdict.unit)}", ends, values, "statistic", verdict.unit, width=1.3)
+    return Curve(
+        f"{name} {quantity(verdict.value, verdict.unit)}", ends, values, "statistic", verdict.unit, width=1.3
+    )
 
 
 def _filtered(stages: Sequence[Stage]) -> Stage:
