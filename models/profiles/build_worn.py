@@ -4,8 +4,8 @@ Each worn shape is anzr1 less two stated wear functions (mm, y outward, z down, 
 
 - tread: the surface is lifted by
   - Hollow: d exp(-((y - c)/w)^2), a hollow of radius w^2/(2 d) at its bottom y = c;
-  - Flank: a tread worn down evenly on its field side, y > c, and less and less towards the root, by a concave parabola of
-    radius R over a length u and a convex one over the length v beside it: depth u (u + v)/(2 R);
+  - Flank: a tread worn down evenly on its field side, y > c, and less and less towards the root, by a concave
+    parabola of radius R over a length u and a convex one over the length v beside it: depth u (u + v)/(2 R);
   faded out over the root between z = 1.5 and 9 mm;
 - flange: the flange face moves towards its back by t, faded in over the same stretch.
 
