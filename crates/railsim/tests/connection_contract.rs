@@ -69,8 +69,14 @@ proptest! {
             let put_in = -power(&wrench(&law, &a, &b, &mount), &a, &b);
             let size = put_in.abs() + stored.abs() + lost.abs() + 1.0;
             // Central difference of energies of up to 1e7 J: rounding 1e7 * 1e-16 / 1e-6. Rotational terms of a bushing
-            // use the antisymmetric part of the rotation, exact to second order: at 0.4 rad some 10 % of a small moment.
-            let slack = if matches!(&law, Law::Bushing(l) if l.rotational_stiffness.is_some()) { 2e4 } else { 0.0 };
+            // use the antisymmetric part of the rotation: off by the relative turn, up to 0.7 rad here, times its moment
+            // K turn (3e4 N m/rad) times the turning rate (1.7 rad/s). Their sign has a test of its own below.
+            let turn = Relative::between(&a, &b);
+            let angle = Rotation3::from_matrix(&turn.R_AB).angle();
+            let slack = match &law {
+                Law::Bushing(l) if l.rotational_stiffness.is_some() => 3e4 * angle * angle * turn.w_AB.norm(),
+                _ => 0.0,
+            };
             prop_assert!((stored + lost - put_in).abs() < 1e-5 * size + slack, "{law:?}: {stored} + {lost} != {put_in}");
         }
     }
@@ -146,4 +152,25 @@ fn parameters_outside_their_range_are_refused_by_key() {
     let spring = Law::PointSpring(PointSpring { stiffness: 1.0, length: 0.0 });
     assert_eq!(spring.faults(&at)[0].key.to_string(), "vehicle.connection[3].length");
     assert!(Law::examples().iter().all(|l| l.faults(&at).is_empty()));
+}
+
+/// Closed form: B turned by a small angle about x against A is turned back with k times the angle, and its turning is
+/// damped with c times the rate.
+#[test]
+fn a_turned_bushing_turns_back() {
+    let Some(Law::Bushing(law)) = Law::examples().into_iter().nth(1) else {
+        panic!("the example with rotation")
+    };
+    let mount = Mount { p_A: Vec3::zeros(), p_B: Vec3::zeros(), preload: Vec3::zeros() };
+    let a = Pose::at(Vec3::zeros());
+    let (angle, rate) = (1e-3, 0.2);
+    let b = Pose {
+        R: Rotation3::new(Vec3::new(angle, 0.0, 0.0)).into_inner(),
+        w: Vec3::new(rate, 0.0, 0.0),
+        ..a
+    };
+    let pair = wrench(&Law::Bushing(law), &a, &b, &mount);
+    let expected = -(1.0e4 * angle + 1.0e2 * rate);
+    assert!((pair.on_B.m.x - expected).abs() < 1e-5 * expected.abs(), "{} {expected}", pair.on_B.m.x);
+    assert!((pair.on_A.m.x + expected).abs() < 1e-5 * expected.abs());
 }

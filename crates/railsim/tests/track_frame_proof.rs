@@ -107,14 +107,3 @@ fn across_segment_joins_the_error_is_that_of_the_straddling_step_alone() {
     assert!(coarse < 2e-4);
     assert!(fine < 0.3 * coarse);
 }
-
-#[test]
-fn a_body_at_rest_in_space_stays_when_weight_is_off_and_the_track_turns_below() {
-    let mut model = free_body();
-    model.gravity = 0.0;
-    let mut system = VehicleSystem::new(&model, SpeedProgram { s: 0.0, speed: 0.0, acceleration: 0.0 });
-    let x = vec![100.0, 1.0, -3.0, 0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let mut dx = vec![1.0; 12];
-    system.rhs(0.0, &x, &mut dx);
-    assert!(dx.iter().all(|v| v.abs() < 1e-15), "{dx:?}");
-}

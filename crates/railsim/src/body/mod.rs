@@ -64,12 +64,7 @@ impl Kinematics {
     #[must_use]
     pub fn zero() -> Self {
         Self {
-            frame: Frame {
-                r_IT: Vec3::zeros(),
-                R_IT: Mat3::identity(),
-                k_T: Vec3::zeros(),
-                dk_T: Vec3::zeros(),
-            },
+            frame: Frame { r_IT: Vec3::zeros(), R_IT: Mat3::identity(), k_T: Vec3::zeros() },
             s_dot: 0.0,
             pose: Pose::at(Vec3::zeros()),
             R_TB: Mat3::identity(),

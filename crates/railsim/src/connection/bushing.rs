@@ -5,7 +5,7 @@
 //! two sets of axes,
 //!
 //! ```text
-//! U = 1/2 [ 1/2 (d_A - d0)' K (d_A - d0) + 1/2 (d_B - d0)' K (d_B - d0) ] - 1/2 P' (d_A + d_B - 2 d0),
+//! U = 1/2 [ 1/2 d_A' K d_A + 1/2 d_B' K d_B ] - 1/2 P' (d_A + d_B),
 //! ```
 //!
 //! so that neither body is preferred: a preload `P` whose ends have moved apart by `D` across it turns each body

@@ -8,16 +8,18 @@
 //! `xi = v_x / V`, `eta = v_t / V` with t the outward tangent in the contact plane, and spin
 //! `phi = Omega . (e_x x e_t) / V`; the slip field in the patch is `(xi - phi y, eta + phi x) V`
 //! (Kalker 1990, eq. 1.85, written for our axes).
+//!
+//! The contact leads or trails the axle by the wheel's yaw against the rail and by the rail's slopes, so that a wheelset which
+//! follows its rails does not creep. Normal and creep forces have no component along a sloping rail: irregularity takes nothing
+//! from the speed.
 
 use crate::body::Kinematics;
 use crate::contact::creep::Creepage;
 use crate::contact::geometry_table::ContactPoint;
 use crate::math::Vec3;
 use crate::math::angle::{self, SinCos};
+use crate::track::cant::BASE as CROSS_LEVEL_BASE;
 use crate::track::irregularity::Deviation;
-
-/// Lateral distance over which cross level is defined, m: the usual distance of contact points on standard gauge.
-pub const CROSS_LEVEL_BASE: f64 = 1.5;
 
 /// Position and velocity of the track mass under a wheelset, relative to the design track.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -45,6 +47,8 @@ pub struct RailPose {
     pub roll: f64,
     /// Its sine and cosine.
     pub turn: SinCos,
+    /// Slope of the running surface along the track, y~ and z, 1.
+    pub slope: [f64; 2],
     /// Velocity of the running surface at the origin as seen from the moving frame, y~ and z, m/s: that of the
     /// track mass plus the deviation passing below.
     pub surface_velocity: [f64; 2],
@@ -56,15 +60,19 @@ pub struct RailPose {
 pub fn rail_pose(sigma: f64, rail_y: f64, dev: &Deviation, track: &TrackMotion, s_dot: f64) -> RailPose {
     let tilt = dev.cross_level / CROSS_LEVEL_BASE;
     let roll = tilt + track.phi;
-    let roll_rate = dev.dcross_level_ds * s_dot / CROSS_LEVEL_BASE + track.vphi;
     let y = rail_y + 0.5 * dev.gauge;
+    let slope = [
+        0.5 * dev.dgauge_ds + sigma * dev.dy_ds,
+        dev.dz_ds + sigma * y * dev.dcross_level_ds / CROSS_LEVEL_BASE,
+    ];
     RailPose {
         origin: [y + sigma * (dev.y + track.y), dev.z + track.z + sigma * y * roll],
         roll: sigma * roll,
         turn: angle::small(sigma * roll),
+        slope,
         surface_velocity: [
-            0.5 * dev.dgauge_ds * s_dot + sigma * (dev.dy_ds * s_dot + track.vy),
-            dev.dz_ds * s_dot + track.vz + sigma * y * roll_rate,
+            slope[0] * s_dot + sigma * track.vy,
+            slope[1] * s_dot + track.vz + sigma * y * track.vphi,
         ],
     }
 }
@@ -78,7 +86,7 @@ pub struct WheelPose {
     pub depth: f64,
     /// Roll of the wheel against the rail, side coordinates, rad.
     pub roll: f64,
-    /// Yaw of the wheelset, side coordinates, rad.
+    /// Yaw of the wheelset against the rail under it, side coordinates, rad.
     pub yaw: f64,
 }
 
@@ -103,7 +111,7 @@ pub fn wheel_pose(
         shift: y * cos + z * sin - nominal_shift,
         depth: z * cos - y * sin,
         roll: sigma * q[3] - rail.roll,
-        yaw: sigma * q[5],
+        yaw: sigma * q[5] - rail.slope[0],
     }
 }
 
@@ -137,7 +145,6 @@ pub fn place(
     sigma: f64,
     contact: &ContactPoint,
     rail: &RailPose,
-    yaw: f64,
     radius: f64,
     q: &[f64],
     k: &Kinematics,
@@ -156,20 +163,24 @@ pub fn place(
     let y = sigma * side_y;
     // On an inclined surface a yawed wheel touches ahead of the axle (flange side outwards-yawed): the normal of
     // its surface of revolution has no forward component where sin(eps) = tan(yaw) tan(gamma).
-    let lead = (radius + contact.z_wheel) * yaw * sin_g / cos_g;
-    // The wheel itself stands behind or ahead of the axle's centre, turned there by yaw with the axle.
+    let (rolling, tan_g, tan_psi) =
+        (radius + contact.z_wheel, sin_g / cos_g, k.R_TB[(1, 0)] / k.R_TB[(0, 0)]);
     let across = y - q[1];
-    let lever = Vec3::new(lead - across * k.R_TB[(1, 0)] / k.R_TB[(0, 0)], across, z - q[2]);
+    // The wheel itself stands behind or ahead of the axle's centre, turned there by yaw with the axle.
+    let ahead = Vec3::new(rolling * sigma * tan_psi * tan_g - across * tan_psi, across, z - q[2]);
+    let v_wheel = k.v_T + w_T.cross(&ahead);
+    // Where the rail turns, falls or rises, the normals meet elsewhere again. The surface's own rate of approach does
+    // not depend on it: it is taken against a surface that moves with those slopes.
+    let back = Vec3::new(-rolling * (rail.slope[0] * tan_g + rail.slope[1]), 0.0, 0.0);
 
-    let v_wheel = k.v_T + w_T.cross(&lever);
     let v_rail = Vec3::new(0.0, track.vy - track.vphi * z, track.vz + track.vphi * y);
-    let slip = v_wheel - v_rail;
+    let slip = v_wheel + w_T.cross(&back) - v_rail;
     let slip_t = slip.dot(&e_t);
     let surface = Vec3::new(0.0, sigma * rail.surface_velocity[0], rail.surface_velocity[1]);
     let spin_axis = Vec3::new(0.0, sin_g, sigma * cos_g); // e_x x e_t
     let spin = (w_T - Vec3::new(track.vphi, 0.0, 0.0)).dot(&spin_axis);
     PlacedContact {
-        lever,
+        lever: ahead + back,
         point: [y, z],
         e_t,
         e_n,

@@ -9,7 +9,7 @@ use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::math::Vec3;
-use crate::schema::{Case, Track, Vehicle};
+use crate::schema::{Case, Connection, Track, Vehicle};
 use crate::track::DeviationField;
 use crate::track::Layout;
 
@@ -20,6 +20,7 @@ use crate::track::Layout;
 pub fn model(case: &Case) -> Result<Model> {
     let vehicle = &case.vehicle;
     let (bodies, wheelsets) = bodies(vehicle);
+    round(vehicle)?;
     let links = links(case)?;
     let sensors = vehicle
         .sensors
@@ -134,6 +135,23 @@ fn support(track: &Track) -> Support {
     }
 }
 
+/// The equations of a wheelset hold for one that is round.
+fn round(vehicle: &Vehicle) -> Result<()> {
+    let faults: Vec<Fault> = vehicle
+        .wheelsets
+        .iter()
+        .filter(|w| (w.inertia[0] - w.inertia[2]).abs() > 1e-6 * w.inertia[0])
+        .map(|w| {
+            Fault::new(
+                w.key.key("inertia"),
+                format!("Ixx = {}, Izz = {} kg m2", w.inertia[0], w.inertia[2]),
+                "Ixx = Izz: a wheelset is round",
+            )
+        })
+        .collect();
+    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
+}
+
 fn bodies(vehicle: &Vehicle) -> (Vec<RigidBody>, Vec<Wheelset>) {
     let bodies = vehicle
         .bodies
@@ -162,32 +180,93 @@ fn bodies(vehicle: &Vehicle) -> (Vec<RigidBody>, Vec<Wheelset>) {
     (bodies, wheelsets)
 }
 
-/// Connections with preloads solved for the design condition, in which the vehicle stands at its written heights.
+/// Connections with preloads solved for the design condition, in which the vehicle stands at its written heights. Masses,
+/// centres of mass and levers of that condition make the preloads; the levers of the case's own condition make the links.
 fn links(case: &Case) -> Result<Vec<Link>> {
-    let vehicle = &case.vehicle;
-    let mut links = Vec::with_capacity(vehicle.connections.len());
-    for connection in &vehicle.connections {
-        let at = connection.key.key("between");
-        let a = index(vehicle, &connection.between[0], &at.index(0))?;
-        let b = index(vehicle, &connection.between[1], &at.index(1))?;
-        if connection.preload && !matches!(connection.law, Law::Bushing(_)) {
-            return Err(Error::input(Fault::new(
-                connection.key.key("carries_weight"),
-                "true",
-                "false: only a `bushing` carries the vehicle's weight",
-            )));
-        }
-        let mount = Mount {
-            p_A: Vec3::from(connection.points[0]) - position(vehicle, a),
-            p_B: Vec3::from(connection.points[1]) - position(vehicle, b),
-            preload: Vec3::zeros(),
-        };
-        links.push(Link { name: connection.name.clone(), a, b, mount, law: connection.law.clone() });
-    }
-    let carries: Vec<bool> = vehicle.connections.iter().map(|c| c.preload).collect();
+    let mut design = mounts(&case.design)?;
+    let carries: Vec<bool> = case.design.connections.iter().map(|c| c.preload).collect();
     let (bodies, wheelsets) = bodies(&case.design);
-    preload::solve(&bodies, &wheelsets, &mut links, &carries, case.run.gravity)?;
+    preload::solve(&bodies, &wheelsets, &mut design, &carries, case.run.gravity)?;
+    let mut links = mounts(&case.vehicle)?;
+    for (link, from) in links.iter_mut().zip(&design) {
+        link.mount.preload = from.mount.preload;
+    }
     Ok(links)
+}
+
+/// Connections between indices, with levers from the centres of mass, not preloaded.
+fn mounts(vehicle: &Vehicle) -> Result<Vec<Link>> {
+    vehicle
+        .connections
+        .iter()
+        .map(|connection| {
+            let at = connection.key.key("between");
+            let a = index(vehicle, &connection.between[0], &at.index(0))?;
+            let b = index(vehicle, &connection.between[1], &at.index(1))?;
+            check_ends(vehicle, connection, [a, b])?;
+            let mount = Mount {
+                p_A: Vec3::from(connection.points[0]) - position(vehicle, a),
+                p_B: Vec3::from(connection.points[1]) - position(vehicle, b),
+                preload: Vec3::zeros(),
+            };
+            Ok(Link { name: connection.name.clone(), a, b, mount, law: connection.law.clone() })
+        })
+        .collect()
+}
+
+/// Least distance of the ends of an element that acts along its line, m.
+const SHORTEST_LINE: f64 = 1e-3;
+/// Farthest that a connection on a wheelset may be off the axle, m.
+const OFF_THE_AXLE: f64 = 1e-3;
+
+/// What a law asks of its two ends, and an axle box of what hangs on it.
+fn check_ends(vehicle: &Vehicle, connection: &Connection, ends: [usize; 2]) -> Result<()> {
+    let refuse = |key: &str, found: String, allowed: &str| {
+        Err(Error::input(Fault::new(connection.key.key(key), found, allowed)))
+    };
+    let apart = (Vec3::from(connection.points[0]) - Vec3::from(connection.points[1])).norm();
+    match &connection.law {
+        Law::Bushing(_) if apart > 0.0 => {
+            return refuse(
+                "positions",
+                format!("ends {apart:.3} m apart"),
+                "`position`: the ends of a bushing coincide in the design position",
+            );
+        }
+        Law::PointDamper(_) | Law::PointSpring(_) if apart < SHORTEST_LINE => {
+            return refuse(
+                "position",
+                format!("ends {apart:.4} m apart"),
+                "`positions`: two points at least 1 mm apart, between which the element acts",
+            );
+        }
+        Law::PointSpring(spring) if (spring.length - apart).abs() > 1e-6 => {
+            return refuse(
+                "length",
+                format!("{} m", spring.length),
+                "the distance of the two positions: a spring carries no hidden preload",
+            );
+        }
+        _ => {}
+    }
+    if connection.preload && !matches!(connection.law, Law::Bushing(_)) {
+        return refuse(
+            "carries_weight",
+            "true".into(),
+            "false: only a `bushing` carries the vehicle's weight",
+        );
+    }
+    for (end, point) in ends.into_iter().zip(&connection.points) {
+        let lever = Vec3::from(*point) - position(vehicle, end);
+        if end >= vehicle.bodies.len() && lever.x.hypot(lever.z) > OFF_THE_AXLE {
+            return refuse(
+                "position",
+                format!("a point {:.3} m off the axle of a wheelset", lever.x.hypot(lever.z)),
+                "a point on the axle: axle boxes are no bodies, nothing would hold their pitch",
+            );
+        }
+    }
+    Ok(())
 }
 
 fn index(vehicle: &Vehicle, name: &str, at: &KeyPath) -> Result<usize> {

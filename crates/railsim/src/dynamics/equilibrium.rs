@@ -167,13 +167,13 @@ fn newton(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, speed: f64) -> Resul
     let mut trial = DVector::zeros(n);
     p.residual(&mut r);
     let mut iterations = 0;
-    while r.amax() > TOLERANCE {
-        if iterations == MOST_ITERATIONS || !r.amax().is_finite() {
+    while size(&r) > TOLERANCE {
+        if iterations == MOST_ITERATIONS || !size(&r).is_finite() {
             let (worst, _) = r.argmax_abs();
             return Err(Error::NotConverged {
                 what: if rolling { "rolling equilibrium".into() } else { "static equilibrium".into() },
                 iterations,
-                residual: r.amax(),
+                residual: size(&r),
                 unit: "m/s2 or rad/s2",
                 worst: describe(model, p.equations[worst]),
             });
@@ -244,14 +244,20 @@ fn describe(model: &Model, equation: usize) -> String {
     "an equation".into()
 }
 
+/// Largest residual; a number that is not finite is larger than all others (`amax` would pass over a NaN).
+fn size(r: &DVector<f64>) -> f64 {
+    if r.iter().all(|v| v.is_finite()) { r.amax() } else { f64::INFINITY }
+}
+
 trait ArgMax {
     fn argmax_abs(&self) -> (usize, f64);
 }
 
 impl ArgMax for DVector<f64> {
     fn argmax_abs(&self) -> (usize, f64) {
-        self.iter()
-            .enumerate()
-            .fold((0, 0.0), |best, (i, v)| if v.abs() > best.1 { (i, v.abs()) } else { best })
+        self.iter().enumerate().fold((0, 0.0), |best, (i, v)| {
+            let v = if v.is_finite() { v.abs() } else { f64::INFINITY };
+            if v > best.1 { (i, v) } else { best }
+        })
     }
 }

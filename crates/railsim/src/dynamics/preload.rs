@@ -31,6 +31,9 @@ pub fn solve(
     carries: &[bool],
     gravity: f64,
 ) -> Result<()> {
+    if bodies.is_empty() {
+        return Ok(()); // wheelsets alone: nothing stands on anything
+    }
     let n = 6 * bodies.len();
     let mut stiffness = DMatrix::<f64>::zeros(n, n);
     let mut load = DVector::<f64>::zeros(n);
@@ -76,9 +79,9 @@ pub fn solve(
                     body.name,
                     residual.rows(6 * i, 6).amax()
                 ),
-                "connections with `carries = true` that hold every body's weight",
+                "connections with `carries_weight = true` that hold every body's weight",
             )
-            .hint("mark the springs that stand under this body with `carries = true`"),
+            .hint("mark the springs that stand under this body with `carries_weight = true`"),
         ));
     }
     for (link, _) in links.iter_mut().zip(carries).filter(|(_, c)| **c) {

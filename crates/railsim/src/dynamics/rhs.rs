@@ -227,7 +227,6 @@ impl Axle<'_> {
                         sigma,
                         point,
                         &rail,
-                        pose.yaw,
                         radius,
                         self.q,
                         self.k,
@@ -258,7 +257,7 @@ impl Axle<'_> {
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, 0.0, &rail);
                 wheel.lift(pose.shift);
                 if pose.depth > 0.0 {
-                    let contact = self.textbook(book, sigma, &pose);
+                    let contact = self.textbook(book, sigma, &pose, rail.surface_velocity[1]);
                     wheel.add(contact, &total_force(&contact), sigma);
                 }
             }
@@ -267,18 +266,20 @@ impl Axle<'_> {
     }
 
     #[inline]
-    fn textbook(&self, book: &Textbook, sigma: f64, pose: &WheelPose) -> ContactForce {
+    fn textbook(&self, book: &Textbook, sigma: f64, pose: &WheelPose, surface: f64) -> ContactForce {
         let half = sigma * self.set.tape_half_distance;
         // In axle axes the contact is below the tape circle, at the rolling radius there.
         let lever = self.k.R_TB * Vec3::new(0.0, half, self.set.radius + book.conicity * pose.shift);
         let rail = Vec3::new(0.0, self.track.vy, self.track.vz + half * self.track.vphi);
-        let slip = self.k.v_T + self.w_T.cross(&lever) - rail;
+        let v_wheel = self.k.v_T + self.w_T.cross(&lever);
+        let slip = v_wheel - rail;
+        let rate = v_wheel.z - surface;
         let creepage = Creepage {
             xi: slip.x / self.speed,
             eta: sigma * slip.y / self.speed,
             phi: sigma * self.w_T.z / self.speed,
         };
-        let normal = (book.stiffness * pose.depth + book.damping * slip.z).max(0.0);
+        let normal = (book.stiffness * pose.depth + book.damping * rate).max(0.0);
         ContactForce {
             geometry: None,
             placed: PlacedContact {
@@ -287,7 +288,7 @@ impl Axle<'_> {
                 e_t: Vec3::new(0.0, sigma, 0.0),
                 e_n: Vec3::new(0.0, 0.0, -1.0),
                 penetration: pose.depth,
-                approach_rate: slip.z,
+                approach_rate: rate,
                 slip: [slip.x, sigma * slip.y],
                 creepage,
             },

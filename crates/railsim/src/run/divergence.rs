@@ -6,6 +6,8 @@ use crate::error::Error;
 
 /// Farther than this from the design position (m) a body is not on this track any more.
 pub const FARTHEST: f64 = 1.0;
+/// Farther than this (m) no track gives way.
+pub const FARTHEST_TRACK: f64 = 0.1;
 /// Larger angles (rad) than this: rolled over or turned across.
 pub const STEEPEST: f64 = 0.6;
 /// A wheel force beyond this many static ones is a blow-up of the integration, not physics.
@@ -37,9 +39,29 @@ pub fn check(system: &mut VehicleSystem<'_>, t: f64, x: &[f64]) -> Result<(), Er
                 format!("{away:.2} m away from its design position (limit {FARTHEST} m)"),
             );
         }
-        let turned = q[coordinate::PHI].abs().max(q[coordinate::PSI].abs());
+        // A wheelset's pitch is its turned angle.
+        let pitch = if i < model.bodies.len() { q[coordinate::THETA].abs() } else { 0.0 };
+        let turned = q[coordinate::PHI].abs().max(q[coordinate::PSI].abs()).max(pitch);
         if turned > STEEPEST {
             return diverged(body.name.clone(), format!("turned by {turned:.2} rad (limit {STEEPEST} rad)"));
+        }
+    }
+    for (w, set) in model.wheelsets.iter().enumerate() {
+        let (q, u) = (&x[map.track_q(w)], &x[map.track_u(w)]);
+        let body = || format!("track under {}", set.body.name);
+        if q.iter().chain(u).any(|v| !v.is_finite()) {
+            return diverged(
+                body(),
+                "a number that is not finite: the integration left its stability limit; take a smaller step"
+                    .into(),
+            );
+        }
+        let away = q[0].abs().max(q[1].abs());
+        if away > FARTHEST_TRACK {
+            return diverged(
+                body(),
+                format!("{away:.2} m away from where it lies (limit {FARTHEST_TRACK} m)"),
+            );
         }
     }
     if let Some(left) = system.scratch.left_rail.take() {

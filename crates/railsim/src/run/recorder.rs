@@ -87,9 +87,10 @@ fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &
     }
 }
 
-/// Y/Q; a lifted wheel carries no lateral force either, so its ratio is 0.
+/// Y/Q; 0 for a wheel without force. A flange that carries without vertical load gives a negative or infinite ratio: that
+/// is for a criterion to judge or refuse, not to be hidden here.
 fn ratio(wheel: &Wheel) -> f64 {
-    if wheel.Q > 0.0 { wheel.Y / wheel.Q } else { 0.0 }
+    if wheel.Q == 0.0 && wheel.Y == 0.0 { 0.0 } else { wheel.Y / wheel.Q }
 }
 
 fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {

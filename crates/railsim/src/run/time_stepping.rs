@@ -7,6 +7,11 @@ use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
 
+/// Room that is taken for rows before the run, at most; more is taken as it is needed.
+const MOST_ROWS_AT_ONCE: usize = 1 << 18;
+/// A run that takes more than this many times its time will not end.
+const LATEST: f64 = 3.0;
+
 /// How the caller watches and stops a run.
 pub trait Control: Sync {
     /// Called now and then with time (s), place (m) and the fraction done.
@@ -75,9 +80,11 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let limit = stability::check(&mut system, &x, integrator)?;
     control.progress(0.0, start, 0.0);
     system.rhs(0.0, &x, &mut dx);
+    // What the perturbed states of that check set.
+    system.scratch.left_rail = None;
 
     let distance = case.track.length;
-    let rows = (distance / speed / (h * every as f64)) as usize + 8;
+    let rows = ((distance / speed / (h * every as f64)) as usize).min(MOST_ROWS_AT_ONCE) + 8;
     let mut recorder = Recorder::new(&model, rows);
     recorder.record(&system, 0.0, &x, &dx);
     let mut stepper = Stepper::new(integrator, map.size(), system.stiff_blocks());
@@ -113,6 +120,16 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             control.progress(t, s, 1.0);
             break Ended::EndOfTrack;
         }
+        if t > LATEST * distance / speed {
+            break Ended::Diverged(Error::Diverged {
+                t,
+                s,
+                body: model.rigid(model.reference()).name.clone(),
+                cause: format!(
+                    "not at the end of the track in {LATEST} times the time that the speed asked for takes: nothing holds it"
+                ),
+            });
+        }
         if output.is_multiple_of(20) {
             control.progress(t, s, ((s - start) / distance).clamp(0.0, 1.0));
         }
@@ -140,6 +157,15 @@ const SMOOTH: f64 = 1e-5;
 /// The start is in equilibrium on the design track, so the irregularity must not have begun there: a step of a millimetre
 /// under a wheel is a hammer blow.
 fn smooth_start(model: &Model, start: f64) -> Result<()> {
+    // Just inside the first segment: a clothoid begins straight, a curve does not.
+    let (curvature, cant) = (model.layout.curvature(1e-6), model.layout.cant(1e-6));
+    if curvature.abs() > 1e-6 || cant.abs() > 1e-6 {
+        return Err(Error::input(Fault::new(
+            KeyPath::of("track.layout"),
+            format!("a first segment of curvature {curvature:.2e} 1/m, cant {cant:.2e} rad"),
+            "a tangent or clothoid first: a run starts on straight track",
+        )));
+    }
     for set in &model.wheelsets {
         let d = model.deviation.at(start + set.body.position.x);
         let largest = [d.y, d.z, d.cross_level, d.gauge].iter().fold(0.0_f64, |m, v| m.max(v.abs()));

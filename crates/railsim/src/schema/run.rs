@@ -39,7 +39,7 @@ pub struct Run {
     pub output_step: f64,
     /// Acceleration of gravity, m/s2; 9.80665, the standard value, if absent.
     #[serde(default = "standard_gravity")]
-    #[schemars(extend("minimum" = 0, "unit" = "m/s2"))]
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s2"))]
     pub gravity: f64,
 }
 

@@ -13,8 +13,6 @@ pub struct Frame {
     pub R_IT: Mat3,
     /// Rotation of T per metre of s, in T, rad/m: (twist, vertical curvature, curvature) to first order.
     pub k_T: Vec3,
-    /// Change of `k_T` (its components in T) per metre of s, rad/m2. A step between two segments is not in it.
-    pub dk_T: Vec3,
 }
 
 /// Angles of the frame as sine and cosine with their changes along s.
@@ -26,21 +24,19 @@ pub(super) struct Attitude {
     pub cant: SinCos,
     /// First derivatives of the three angles with respect to s, rad/m.
     pub first: [f64; 3],
-    /// Second derivatives, rad/m2.
-    pub second: [f64; 3],
 }
 
 impl Frame {
     /// Straight level track along inertial x from the inertial origin.
     #[inline]
     pub(super) fn level(s: f64) -> Self {
-        Self { r_IT: Vec3::new(s, 0.0, 0.0), R_IT: Mat3::identity(), k_T: Vec3::zeros(), dk_T: Vec3::zeros() }
+        Self { r_IT: Vec3::new(s, 0.0, 0.0), R_IT: Mat3::identity(), k_T: Vec3::zeros() }
     }
 
     /// The straight line that leaves this frame along its own x.
     pub(super) fn straight_on(&self, distance: f64) -> Self {
         let r_IT = self.r_IT + self.R_IT.column(0) * distance;
-        Self { r_IT, R_IT: self.R_IT, k_T: Vec3::zeros(), dk_T: Vec3::zeros() }
+        Self { r_IT, R_IT: self.R_IT, k_T: Vec3::zeros() }
     }
 }
 
@@ -66,15 +62,9 @@ impl Attitude {
             cg * sc,
             cg * cc,
         );
-        // k_T = e_x c' + Rx(-c) [e_y g' + Ry(-g) e_z h'], then differentiated with respect to s.
+        // k_T = e_x c' + Rx(-c) [e_y g' + Ry(-g) e_z h'].
         let [h1, g1, c1] = self.first;
-        let [h2, g2, c2] = self.second;
         let k_T = Vec3::new(c1 - h1 * sg, g1 * cc + h1 * sc * cg, -g1 * sc + h1 * cc * cg);
-        let dk_T = Vec3::new(
-            c2 - h2 * sg - h1 * g1 * cg,
-            g2 * cc - g1 * c1 * sc + h2 * sc * cg + h1 * c1 * cc * cg - h1 * g1 * sc * sg,
-            -g2 * sc - g1 * c1 * cc + h2 * cc * cg - h1 * c1 * sc * cg - h1 * g1 * cc * sg,
-        );
-        Frame { r_IT, R_IT, k_T, dk_T }
+        Frame { r_IT, R_IT, k_T }
     }
 }

@@ -163,23 +163,20 @@ impl Piece {
 
     fn frame(&self, u: f64) -> Frame {
         let shape = self.transition.at(u * self.per_length);
-        let (slope, second) =
-            (shape.slope * self.per_length, shape.second * self.per_length * self.per_length);
-        let along = |[start, rise]: [f64; 2]| (start + rise * shape.value, rise * slope, rise * second);
-        let (curvature, curvature_slope, _) = along(self.curvature);
-        let (sine, sine_slope, sine_second) = along(self.cant);
-        let (_, gradient_slope, gradient_second) = along(self.gradient);
-        // sin(c) is what the transition shapes: c' = sin' / cos, c'' = sin'' / cos + sin'^2 sin / cos^3.
+        let slope = shape.slope * self.per_length;
+        let along = |[start, rise]: [f64; 2]| (start + rise * shape.value, rise * slope);
+        let (curvature, _) = along(self.curvature);
+        let (sine, sine_slope) = along(self.cant);
+        let (_, gradient_slope) = along(self.gradient);
+        // sin(c) is what the transition shapes: c' = sin' / cos.
         let cosine = (1.0 - sine * sine).sqrt();
         let cant_slope = sine_slope / cosine;
-        let cant_second = (sine_second + cant_slope * cant_slope * sine) / cosine;
         let Line { r_IT, heading, gradient } = self.line(u);
         let attitude = Attitude {
             heading,
             gradient,
             cant: (sine, cosine),
             first: [curvature, gradient_slope, cant_slope],
-            second: [curvature_slope, gradient_second, cant_second],
         };
         attitude.frame(r_IT)
     }
