@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from lmap import files
 from lmap.errors import InputProblem, Problem, listed, nearest_hint
-from lmap.verdict import Acceptance, CaseResult, Outcome, SpecVerdict
+from lmap.verdict import Acceptance, CaseResult, SpecVerdict, outcome_of
 
 if TYPE_CHECKING:
     import polars as pl
@@ -186,7 +186,7 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         procedure=spec.procedure,
         vehicle=prepared.vehicle.data.name,
         condition=spec.condition or "",
-        outcome=Outcome.worst(criterion.outcome for criterion in criteria),
+        outcome=outcome_of(criteria),
         criteria=criteria,
         facts=prepared.facts,
         cases=cases,

@@ -93,6 +93,15 @@ class CriterionVerdict:
     """Why it could not be judged."""
 
 
+def outcome_of(criteria: Iterable[CriterionVerdict]) -> Outcome:
+    """A spec's outcome: the worst of its criteria; where none of them has a limit, nothing was assessed."""
+    criteria = list(criteria)
+    worst = Outcome.worst(criterion.outcome for criterion in criteria)
+    if worst is Outcome.PASS and not any(criterion.judged for criterion in criteria):
+        return Outcome.NOT_ASSESSED
+    return worst
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fact:
     """Something shown beside the verdicts and never judged, e.g. the irregularity's extremes."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -15,6 +16,7 @@ from lmap.errors import InputProblem, SimulationProblem
 from lmap.execute.local import run_cases
 from lmap.execute.progress import Lines, Progress
 from lmap.prepare import prepare
+from lmap.report import junit
 from lmap.verdict import Outcome
 
 pytestmark = pytest.mark.usefixtures("toy")
@@ -58,6 +60,27 @@ def test_a_check_judges_every_criterion_in_every_case() -> None:
         "profile",
     ]
     assert spec.criteria[0].published == 0.055
+
+
+def without_limits() -> None:
+    spec = Path("specs/sway.toml")
+    lines = spec.read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if not line.startswith(("max", "min", "strict"))]
+    spec.write_text("\n".join(kept) + "\n", encoding="utf-8")
+
+
+def test_a_spec_without_a_limit_does_not_pass() -> None:
+    without_limits()
+    acceptance = lmap.check("sway")
+    assert (acceptance.outcome, acceptance.exit_code) == (Outcome.NOT_ASSESSED, 1)
+    assert all(criterion.outcome is Outcome.PASS for criterion in acceptance.specs[0].criteria)
+    suite = ET.fromstring(junit(acceptance))[0]
+    assert [suite.get(key) for key in ("tests", "failures", "errors", "skipped")] == ["7", "0", "0", "1"]
+
+
+def test_a_spec_without_a_limit_that_cannot_be_judged_stays_an_error() -> None:
+    without_limits()
+    assert lmap.check("sway", set={"run.test": "diverge"}).outcome is Outcome.ERROR
 
 
 def test_a_bad_vehicle_fails() -> None:
