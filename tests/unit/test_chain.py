@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from lmap import toml
+from lmap import signals, toml
 from lmap.criteria import chain_problems, expand, judge, signal_problems, trace
 from lmap.criteria.chain import Criterion
 from lmap.criteria.units import STANDARD_GRAVITY, UNITS, comparable, factor
@@ -255,6 +255,60 @@ def test_faults_of_a_chain_name_the_link(
 ) -> None:
     problem = chain_problems(criterion(chain=chain))[0]
     assert (problem.key, problem.found, problem.hint) == (key, found, hint)
+
+
+NO_LIMIT: dict[str, Any] = {"max_abs": None, "max": None, "min": None}
+
+
+@pytest.mark.parametrize(
+    "statistic",
+    [
+        {"maximum": {}},
+        {"minimum": {}},
+        {"sustained": {"window_s": 1.0}},
+        {"sliding_mean": {"window_m": 2.0}},
+        {"percentile": {"percent": 99.85}},
+    ],
+)
+def test_max_abs_of_a_one_sided_statistic_is_refused(statistic: dict[str, Any]) -> None:
+    [problem] = chain_problems(criterion(chain=[statistic]))
+    assert problem.key == ("max_abs",)
+    assert problem.allowed == "max or min, absolute = true, or max_abs = {} as statistic"
+    assert chain_problems(criterion(**(NO_LIMIT | {"max": 2.0}), chain=[statistic])) == []
+
+
+@pytest.mark.parametrize(
+    "statistic",
+    [
+        {"sustained": {"window_s": 1.0, "absolute": True}},
+        {"sliding_mean": {"window_m": 2.0, "absolute": True}},
+        {"percentile": {"percent": 99.85, "absolute": True}},
+        {"average_peak": {"window_s": 5.0}},
+        {"sliding_rms": {"window_s": 2.0}},
+        {"max_abs": {}},
+        {"mean": {}},
+        {"rms": {}},
+        {"peak_to_peak": {}},
+    ],
+)
+def test_max_abs_of_a_statistic_that_sees_both_sides_is_taken(statistic: dict[str, Any]) -> None:
+    assert chain_problems(criterion(chain=[statistic])) == []
+
+
+def test_every_statistic_stands_in_one_of_the_two_lists_above() -> None:
+    names = {name for name, kind in signals.BY_NAME.items() if issubclass(kind, signals.Statistic)}
+    one_sided = {name for name in names if signals.BY_NAME[name].one_sided}  # type: ignore[attr-defined]
+    assert one_sided == {"maximum", "minimum", "sustained", "sliding_mean", "percentile"}
+    assert names - one_sided == {"average_peak", "sliding_rms", "max_abs", "mean", "rms", "peak_to_peak"}
+
+
+@pytest.mark.parametrize("link", ["sustained", "sliding_mean"])
+@pytest.mark.parametrize("absolute", [True, False])
+def test_a_least_value_of_the_largest_window_is_refused(link: str, absolute: bool) -> None:
+    chain = [{link: {"window_s": 1.0, "absolute": absolute}}]
+    [problem] = chain_problems(criterion(**(NO_LIMIT | {"min": 0.5}), chain=chain))
+    assert (problem.key, problem.allowed) == (("min",), "max, or minimum = {} as statistic")
+    assert chain_problems(criterion(**(NO_LIMIT | {"min": 0.5}), chain=[{"minimum": {}}])) == []
 
 
 def test_a_criterion_can_be_written_back() -> None:

@@ -183,11 +183,26 @@ def chain_problems(criterion: Criterion) -> list[Problem]:
                 problems.append(
                     Problem(found=f"the statistic {link.name}", allowed=allowed, key=("chain", position))
                 )
+            if last and isinstance(link, Statistic):
+                problems += _limit_problems(criterion, link)
     if criterion.unit not in units.UNITS:
         hint = nearest_hint(criterion.unit, units.UNITS)
         problems.append(
             Problem(found=f'"{criterion.unit}"', allowed=listed(units.UNITS, 40), key=("unit",), hint=hint)
         )
+    return problems
+
+
+def _limit_problems(criterion: Criterion, statistic: Statistic) -> list[Problem]:
+    """Limits that a statistic's number can keep whatever the signal does on its other side."""
+    problems = []
+    if criterion.max_abs is not None and statistic.one_sided and not statistic.is_magnitude:
+        allowed = "max or min, absolute = true, or max_abs = {} as statistic"
+        found = f"max_abs with the one-sided statistic {statistic.name}"
+        problems.append(Problem(found=found, allowed=allowed, key=("max_abs",)))
+    if criterion.min is not None and statistic.largest:
+        found = f"min with {statistic.name}, which gives the largest"
+        problems.append(Problem(found=found, allowed="max, or minimum = {} as statistic", key=("min",)))
     return problems
 
 

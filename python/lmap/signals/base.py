@@ -70,6 +70,11 @@ class Filter(Link):
 class Statistic(Link):
     """A link that turns a signal into one number."""
 
+    one_sided: ClassVar[bool] = False
+    """Whether a signal's motion to one side alone gives the number: the other side then needs `absolute`."""
+    largest: ClassVar[bool] = False
+    """Whether the number is the largest of many levels: that it keeps a least value says little of the rest."""
+
     @abstractmethod
     def read(self, signal: pl.DataFrame) -> Reading:
         """The number and where it is; a `JudgementProblem` where there is none."""

@@ -109,6 +109,8 @@ class Sustained(_Windowed):
     """
 
     name: ClassVar[str] = "sustained"
+    one_sided: ClassVar[bool] = True
+    largest: ClassVar[bool] = True
     absolute: bool = False
 
     @property
@@ -127,6 +129,8 @@ class SlidingMean(_Windowed):
     """Largest mean over a window (EN 14363 and UIC 518 read L/V so); `absolute` takes the mean's size."""
 
     name: ClassVar[str] = "sliding_mean"
+    one_sided: ClassVar[bool] = True
+    largest: ClassVar[bool] = True
     absolute: bool = False
 
     @property
@@ -178,6 +182,7 @@ class Maximum(Statistic):
     """Largest x."""
 
     name: ClassVar[str] = "maximum"
+    one_sided: ClassVar[bool] = True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """Value and its sample."""
@@ -188,6 +193,7 @@ class Minimum(Statistic):
     """Smallest x."""
 
     name: ClassVar[str] = "minimum"
+    one_sided: ClassVar[bool] = True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """Value and its sample."""
@@ -226,6 +232,7 @@ class Percentile(Statistic):
     """The value that `percent` of the samples stay below, interpolated; `absolute` of |x|."""
 
     name: ClassVar[str] = "percentile"
+    one_sided: ClassVar[bool] = True
     percent: float = Field(ge=0.0, le=100.0)
     absolute: bool = False
 
