@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import tempfile
@@ -11,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lmap import files
-from lmap.errors import InputProblem, Problem, listed, nearest_hint
+from lmap.errors import InputProblem, LmapError, Problem, listed, nearest_hint
 from lmap.verdict import Acceptance, CaseResult, SpecVerdict, outcome_of
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def check(
     """
     begun = time.perf_counter()
     given = [specs] if isinstance(specs, str | Path) else list(specs)
-    folder = None if report is None else _report_folder(Path(report))
+    folder = None if report is None else report_folder(report)
     prepared = _prepare_all(given, set or {})
 
     from lmap.execute.local import run_cases
@@ -201,36 +202,63 @@ def _core() -> str:
     return core_version()
 
 
-def _report_folder(folder: Path) -> Path:
-    """The folder, if it is one or can become one."""
-    if folder.exists() and not folder.is_dir():
-        raise InputProblem(
-            Problem(key=("--report",), found=f"{files.shown(folder)}, a file", allowed="a folder")
-        )
-    above = folder.absolute().parent
-    while not above.exists():
-        above = above.parent
-    if not above.is_dir() or not os.access(above, os.W_OK):
+def report_folder(given: str | Path) -> Path:
+    """The folder for a report, if it is one or can become one; asked before anything runs."""
+    folder = Path(given)
+    nearest = folder.absolute()
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise InputProblem(
+                Problem(key=("--report",), found=f"{files.shown(folder)}, a file", allowed="a folder")
+            )
+        while not nearest.exists():
+            nearest = nearest.parent
+        writable = nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
+    except OSError:
+        writable = False
+    if not writable:
         found = f"{files.shown(folder)}, where nothing can be written"
         raise InputProblem(Problem(key=("--report",), found=found, allowed="a folder"))
     return folder
 
 
 def write_report(acceptance: Acceptance, folder: Path) -> None:
-    """Writes the report beside `folder`, then moves it there file by file, each whole or not at all.
+    """Writes the report into a folder within `folder`, then moves it up file by file, each whole or not at all.
 
-    An interrupted check leaves what was there before. The page itself comes last.
+    Within, not beside: `folder` may be a file system of its own, and what is above it not ours to write. An
+    interrupted check leaves what was there before, no folder where there was none. The page comes last.
     """
     from lmap.report import write_report as write
 
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    beside = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".partial", dir=folder.parent))
+    created: list[Path] = []
     try:
-        write(acceptance, beside)
-        made = sorted(path for path in beside.rglob("*") if path.is_file())
-        for path in sorted(made, key=lambda one: one.name == "index.html"):
-            target = folder / path.relative_to(beside)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            path.replace(target)
+        _make_folder(folder, created)
+        partial = Path(tempfile.mkdtemp(prefix=".report.", suffix=".partial", dir=folder))
+        try:
+            write(acceptance, partial)
+            made = sorted(path for path in partial.rglob("*") if path.is_file())
+            for path in sorted(made, key=lambda one: one.name == "index.html"):
+                target = folder / path.relative_to(partial)
+                _make_folder(target.parent, created)
+                path.replace(target)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+    except OSError as error:
+        raise LmapError(
+            f"the report cannot be written to {files.shown(folder)}: {error.strerror or error}"
+        ) from error
     finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        for one in reversed(created):
+            with contextlib.suppress(OSError):  # what holds something stays
+                one.rmdir()
+
+
+def _make_folder(folder: Path, created: list[Path]) -> None:
+    """Makes a folder and those above it that are missing, and notes them, the outermost first."""
+    missing = []
+    while not folder.is_dir():
+        missing.append(folder)
+        folder = folder.parent
+    for one in reversed(missing):
+        one.mkdir()
+        created.append(one)

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -175,6 +176,52 @@ def test_a_report_that_is_a_file_is_refused_before_anything_runs(lmap: Callable[
     ran = lmap("check", "sway", "--report", "out")
     assert ran.code == 2
     assert ran.err == "lmap: --report: found out, a file; allowed: a folder\n"
+
+
+def test_a_report_is_written_in_a_folder_whose_parent_is_not_ours(
+    lmap: Callable[..., Ran], toy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (toy / "above" / "out").mkdir(parents=True)
+    access, mkdtemp = os.access, tempfile.mkdtemp
+    inside: list[Path] = []
+
+    def made(*, dir: Path, **more: str) -> str:  # noqa: A002 -- tempfile's name
+        inside.append(Path(dir).resolve())
+        return mkdtemp(dir=dir, **more)
+
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path).name != "above" and access(path, mode))
+    monkeypatch.setattr(tempfile, "mkdtemp", made)
+    assert lmap("check", "sway", "--report", "above/out").code == 0
+    assert inside == [(toy / "above" / "out").resolve()]
+    assert [path.name for path in (toy / "above" / "out").glob(".*")] == []
+    assert lmap("check", "sway", "--report", "above/other").code == 2
+
+
+def test_a_report_goes_into_folders_that_are_not_there_yet(lmap: Callable[..., Ran], toy: Path) -> None:
+    assert lmap("check", "sway", "--report", "a/b/out").code == 0
+    assert (toy / "a" / "b" / "out" / "index.html").is_file()
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_a_report_that_cannot_be_written_leaves_the_table_and_no_folder(
+    lmap: Callable[..., Ran], toy: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    def full(_: object, folder: Path) -> None:
+        (folder / "cases").mkdir()
+        (folder / "cases" / "a.json").write_text("{}", encoding="utf-8")
+        raise error
+
+    monkeypatch.setattr("lmap.report.write_report", full)
+    before = sorted(toy.rglob("*"))
+    ran = lmap("check", "sway", "--report", "a/out")
+    assert "lateral acceleration" in ran.out
+    assert sorted(toy.rglob("*")) == before
+    last = ran.err.splitlines()[-1]
+    if isinstance(error, KeyboardInterrupt):
+        assert (ran.code, last) == (130, "lmap: stopped")
+    else:
+        assert ran.code == 2
+        assert last == "lmap: the report cannot be written to a/out: No space left on device"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT between processes")

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from lmap.verdict import Acceptance
 
 
 def check(
@@ -41,16 +44,33 @@ def check(
     Example: lmap check hunting --report out/ --set secondary.kz=5e5 --jobs 2
     """
     from lmap.check import check as run_check
+    from lmap.check import report_folder, write_report
     from lmap.execute.progress import choose
     from lmap.spec import overrides
 
+    folder = None if report is None else report_folder(report)
     acceptance = run_check(
         specs,
         set=overrides.parse(settings or []),
         jobs=jobs,
-        report=report,
         progress=choose(quiet=quiet),
     )
+    # the verdict first: it was long in coming, and a report that cannot be written must not take it along
+    unread: BrokenPipeError | None = None
+    try:
+        _show(acceptance, as_json=as_json)
+    except BrokenPipeError as error:
+        unread = error
+    if folder is not None:
+        write_report(acceptance, folder)
+        if not as_json:
+            print(f"report: {folder / 'index.html'}", file=sys.stderr)
+    if unread is not None:
+        raise unread
+    raise typer.Exit(acceptance.exit_code)
+
+
+def _show(acceptance: Acceptance, *, as_json: bool) -> None:
     if as_json:
         from lmap.report import to_json
 
@@ -61,6 +81,4 @@ def check(
         from lmap.report.terminal import table
 
         table(acceptance, Console())
-        if report is not None:
-            print(f"report: {report / 'index.html'}", file=sys.stderr)
-    raise typer.Exit(acceptance.exit_code)
+    sys.stdout.flush()
