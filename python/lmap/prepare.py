@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from lmap import contact, files, procedures, toml
 from lmap.criteria.chain import signal_problems
 from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
 from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Procedure
-from lmap.simulate import Channel, channels, check_case, track_extremes
+from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, build, merged
 from lmap.spec.load import LoadedSpec, load
 from lmap.spec.model import Spec
@@ -265,28 +264,19 @@ def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:
 
 def load_case(path: Path) -> Case:
     """A case from a file, JSON or the same keys in TOML, checked by the core."""
-    document: toml.Document | None = None
-    if path.suffix == ".toml":
-        document = toml.load(path, "case")
-        data: Any = document.data
-    else:
-        try:
-            data = json.loads(files.read_text(path, "case"))
-        except json.JSONDecodeError as error:
-            raise InputProblem(
-                Problem(
-                    file=files.shown(path), line=error.lineno, found=f"no JSON: {error.msg}", allowed="a case"
-                )
-            ) from None
-    if not isinstance(data, dict):
-        raise InputProblem(Problem(file=files.shown(path), found="no table", allowed="a case"))
-    case = Case(str(data.get("label", path.stem)), data)
+    document = toml.load(path, "case") if path.suffix == ".toml" else None
     try:
+        if document is not None:
+            case = case_of(document.data, path.stem)
+        else:
+            case = case_of(toml.json_loads(files.read_text(path, "case"), "a case"), path.stem)
         check_case(case)
     except InputProblem as error:
         raise InputProblem(
             [
-                document.locate(p) if document is not None else p.at(file=files.shown(path))
+                p
+                if p.file is not None
+                else (document.locate(p) if document is not None else p.at(file=files.shown(path)))
                 for p in error.problems
             ]
         ) from None

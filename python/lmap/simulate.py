@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lmap import toml
-from lmap.errors import InputProblem, SimulationProblem
+from lmap.errors import InputProblem, Problem, SimulationProblem
 from lmap.spec.case import Case
 
 if TYPE_CHECKING:
@@ -39,11 +38,18 @@ def simulate(case: Case | Mapping[str, Any] | str) -> pl.DataFrame:
 
 
 def as_case(case: Case | Mapping[str, Any] | str) -> Case:
-    """A case from its plain data or its JSON."""
+    """A case from its plain data or its JSON; an `InputProblem` where it is neither."""
     if isinstance(case, Case):
-        return case
-    data = json.loads(case) if isinstance(case, str) else case
-    return Case(str(data.get("label", "case")), data)
+        return Case(case.label, toml.plain(case.data, "a case"))
+    return case_of(toml.json_loads(case, "a case") if isinstance(case, str) else case, "case")
+
+
+def case_of(data: Any, label: str) -> Case:
+    """A case from plain data; `label` where it has none of its own."""
+    if not isinstance(data, Mapping):
+        raise InputProblem(Problem(found=f"no table but {type(data).__name__}", allowed="a case"))
+    data = toml.plain(data, "a case")
+    return Case(str(data.get("label", label)), data)
 
 
 def check_case(case: Case) -> None:

@@ -102,6 +102,58 @@ def not_finite(data: Any, key: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
             yield from not_finite(value, (*key, index))
 
 
+def json_loads(text: str, noun: str) -> Any:
+    """The plain data of a JSON text; an `InputProblem` with the line where it is none."""
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InputProblem(Problem(line=error.lineno, found=f"no JSON: {error.msg}", allowed=noun)) from None
+    except RecursionError:
+        raise InputProblem(Problem(found=_TOO_DEEP, allowed=noun)) from None
+    except ValueError as error:  # a number of more digits than Python reads
+        raise InputProblem(Problem(found=f"no JSON: {error}", allowed=noun)) from None
+    return plain(data, noun)
+
+
+def plain(data: Any, noun: str, key: KeyPath = ()) -> Any:
+    """A copy of data that JSON can hold; an `InputProblem` with the key of everything that it cannot."""
+    problems: list[Problem] = []
+    try:
+        copy = _plain(data, key, problems)
+    except RecursionError:
+        raise InputProblem(Problem(found=_TOO_DEEP, allowed=noun, key=key)) from None
+    if problems:
+        raise InputProblem(problems)
+    return copy
+
+
+_TOO_DEEP = "tables or lists too deep in each other"
+
+
+def _plain(data: Any, key: KeyPath, problems: list[Problem]) -> Any:
+    allowed = "a text, a finite number, true, false, a list or a table"
+    if isinstance(data, Mapping):
+        for name in data:
+            if not isinstance(name, str):
+                problems.append(Problem(found=f"the key {name!r}", allowed="keys that are texts", key=key))
+        return {name: _plain(value, (*key, str(name)), problems) for name, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value, (*key, index), problems) for index, value in enumerate(data)]
+    if isinstance(data, float):
+        if not math.isfinite(data):
+            problems.append(Problem(found=str(data), allowed="a finite number", key=key))
+        return data
+    if isinstance(data, str):
+        try:
+            data.encode()
+        except UnicodeEncodeError:
+            problems.append(Problem(found=ascii(data), allowed="a text in Unicode", key=key))
+        return data
+    if data is not None and not isinstance(data, int):
+        problems.append(Problem(found=f"{data!r} of type {type(data).__name__}", allowed=allowed, key=key))
+    return data
+
+
 def line_of(text: str, key: Sequence[str | int]) -> int | None:
     """The 1-based line of the deepest part of a key path that a TOML text has."""
     if not key:

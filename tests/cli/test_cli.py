@@ -17,7 +17,7 @@ from typing import NamedTuple
 import polars as pl
 import pytest
 
-import lmap.prepare
+from lmap import prepare
 from lmap.cli import app
 
 FAKE = Path(__file__).parent / "fake_cli.py"
@@ -127,6 +127,46 @@ def test_bad_input_leaves_with_2_one_message_and_no_file(
     assert ran.err.startswith(message)
     assert ran.err.count("\n") == 1
     assert sorted(toy.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("output", "fault"),
+    [
+        ("models", "a folder"),
+        ("specs/sway.toml/run.parquet", "below the file sway.toml"),
+        ("case.json", "the case itself"),
+        ("models/../case.json", "the case itself"),
+    ],
+)
+def test_an_output_that_cannot_be_written_is_refused_before_the_run(
+    lmap: Callable[..., Ran], toy: Path, output: str, fault: str
+) -> None:
+    case = prepare.prepare(toy / "specs" / "sway.toml").cases[0]
+    Path("case.json").write_text(case.json, encoding="utf-8")
+    before = sorted(toy.rglob("*"))
+    ran = lmap("run", "case.json", "--output", output)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err == f"lmap: --output: found {output}, {fault}; allowed: a file to write\n"
+    assert sorted(toy.rglob("*")) == before
+    assert Path("case.json").read_text(encoding="utf-8") == case.json
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"run": {"speed": NaN}}', "lmap: case.json: run.speed: found nan; allowed: a finite number\n"),
+        ("[" * 100_000, "lmap: case.json: found tables or lists too deep in each other; allowed: a case\n"),
+        ("{\n,", "lmap: case.json:2: found no JSON: "),
+        ("3", "lmap: case.json: found no table but int; allowed: a case\n"),
+    ],
+    ids=["nan", "deep", "syntax", "number"],
+)
+def test_a_case_file_that_is_none_is_refused(lmap: Callable[..., Ran], text: str, message: str) -> None:
+    Path("case.json").write_text(text, encoding="utf-8")
+    ran = lmap("run", "case.json")
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith(message)
+    assert ran.err.count("\n") == 1
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -27,7 +28,7 @@ def run(
 
     Example: lmap run out/cases/0f3a....json --output run.parquet
     """
-    from lmap.errors import SimulationProblem
+    from lmap.errors import LmapError, SimulationProblem
     from lmap.execute.local import run_cases
     from lmap.execute.progress import choose
     from lmap.prepare import load_case
@@ -37,6 +38,7 @@ def run(
 
     target = Path(f"{case.stem}.parquet") if output is None else output
     loaded = load_case(case)
+    _check_target(target, case)
     known = channels(loaded)
     [outcome] = run_cases([loaded], jobs=1, progress=choose(quiet=quiet))
     if outcome.frame is None or outcome.trouble is not None:
@@ -54,11 +56,39 @@ def run(
         meanings={channel.name: channel.meaning for channel in known},
         wall_s=outcome.wall_s,
     )
-    target.parent.mkdir(parents=True, exist_ok=True)
     partial = target.with_name(f".{target.name}.partial")
     try:
-        partial.write_bytes(to_parquet(result))
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            partial.write_bytes(to_parquet(result))
+            partial.replace(target)
+        finally:
+            partial.unlink(missing_ok=True)
+    except OSError as error:
+        raise LmapError(f"{target} cannot be written: {error.strerror or error}") from error
     typer.echo(f"{target}: {outcome.frame.height} rows, {outcome.frame.width} channels", err=True)
+
+
+def _check_target(target: Path, case: Path) -> None:
+    """Refuses before the run a file that could not be written after it."""
+    from lmap.errors import InputProblem, Problem
+
+    nearest = target.absolute().parent
+    try:
+        while not nearest.exists():
+            nearest = nearest.parent
+        if target.is_dir():
+            fault = "a folder"
+        elif target.exists() and target.samefile(case):
+            fault = "the case itself"
+        elif not nearest.is_dir():
+            fault = f"below the file {nearest.name}"
+        elif not os.access(nearest, os.W_OK | os.X_OK):
+            fault = "where nothing can be written"
+        else:
+            return
+    except OSError as error:
+        fault = f"which cannot be written: {error.strerror}"
+    raise InputProblem(
+        Problem(key=("--output",), found=f"{target.as_posix()}, {fault}", allowed="a file to write")
+    )
