@@ -40,7 +40,9 @@ def check(
     begun = time.perf_counter()
     given = [specs] if isinstance(specs, str | Path) else list(specs)
     folder = None if report is None else report_folder(report)
-    prepared = _prepare_all(given, set or {})
+    from lmap.spec import overrides
+
+    prepared = _prepare_all(given, overrides.checked(set or {}))
 
     from lmap.execute.local import run_cases
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import polars as pl
 import pytest
 
@@ -17,6 +19,7 @@ from lmap.execute.local import run_cases
 from lmap.execute.progress import Lines, Progress
 from lmap.prepare import prepare
 from lmap.report import junit
+from lmap.spec.case import Case
 from lmap.verdict import Outcome
 
 pytestmark = pytest.mark.usefixtures("toy")
@@ -236,6 +239,54 @@ def test_simulate_gives_the_frame_or_says_why_not() -> None:
     assert lmap.simulate(case.json).equals(frame)
     with pytest.raises(SimulationProblem, match="derailed"):
         lmap.simulate({**case.data, "run": {**case.data["run"], "test": "diverge"}})
+
+
+def nested(depth: int) -> dict[str, Any]:
+    table: dict[str, Any] = {}
+    for _ in range(depth):
+        table = {"a": table}
+    return table
+
+
+@pytest.mark.parametrize(
+    ("case", "message"),
+    [
+        ("{", "line 1: found no JSON"),
+        ("[1]", "found no table but list"),
+        (7, "found no table but int"),
+        ('{"run": {"speed": NaN}}', "run.speed: found nan; allowed: a finite number"),
+        ('{"run": {"speed": 1e999}}', "run.speed: found inf; allowed: a finite number"),
+        ({"run": {"speed": math.nan}}, "run.speed: found nan; allowed: a finite number"),
+        ({"run": {"speed": np.float32(3.0)}}, "run.speed: found np.float32(3.0) of type float32"),
+        ({"track": {"points": [1.0, np.int64(3)]}}, "track.points[1]: found np.int64(3) of type int64"),
+        ({"run": {3: 1.0}}, "run: found the key 3"),
+        ('{"label": "\\ud800"}', "label: found "),
+        ('{"a":' * 100_000, "found tables or lists too deep in each other"),
+        (nested(100_000), "found tables or lists too deep in each other"),
+        (Case("x", {"run": {"speed": math.inf}}), "run.speed: found inf"),
+    ],
+    ids=range(13),
+)
+def test_a_case_that_is_none_is_refused_with_its_key(case: Any, message: str) -> None:
+    with pytest.raises(InputProblem) as caught:
+        lmap.simulate(case)
+    assert str(caught.value).startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"secondary.kz": math.nan}, 'set."secondary.kz": found nan; allowed: a finite number'),
+        ({"secondary.kz": np.int64(3)}, 'set."secondary.kz": found np.int64(3) of type int64'),
+        ({"run.speed": [1.0, np.float32(3)]}, 'set."run.speed"[1]: found np.float32(3.0) of type float32'),
+        ({3: 1.0}, "set: found the key 3"),
+        (["run.speed=3"], "set: found list; allowed: a mapping"),
+    ],
+)
+def test_settings_that_no_spec_could_write_are_refused_with_their_key(settings: Any, message: str) -> None:
+    with pytest.raises(InputProblem) as caught:
+        lmap.check("sway", set=settings)
+    assert str(caught.value).startswith(message)
 
 
 def test_a_vehicle_is_loaded_and_resolved() -> None:

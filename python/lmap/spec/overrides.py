@@ -44,6 +44,15 @@ def parse(settings: Iterable[str]) -> dict[str, Any]:
     return parsed
 
 
+def checked(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings as Python gives them; an `InputProblem` with the key of those that a spec could not write."""
+    if not isinstance(settings, Mapping):
+        found = f"{type(settings).__name__}"
+        raise InputProblem(Problem(key=("set",), found=found, allowed="a mapping of keys to values"))
+    found_: dict[str, Any] = toml.plain(settings, "settings", ("set",))
+    return found_
+
+
 def value(text: str) -> Any:
     """A value as TOML writes it, else the text itself."""
     try:
