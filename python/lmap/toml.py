@@ -133,9 +133,11 @@ _TOO_DEEP = "tables or lists too deep in each other"
 def _plain(data: Any, key: KeyPath, problems: list[Problem]) -> Any:
     allowed = "a text, a finite number, true, false, a list or a table"
     if isinstance(data, Mapping):
-        for name in data:
-            if not isinstance(name, str):
-                problems.append(Problem(found=f"the key {name!r}", allowed="keys that are texts", key=key))
+        problems += [
+            Problem(found=f"the key {name!r}", allowed="keys that are texts", key=key)
+            for name in data
+            if not isinstance(name, str)
+        ]
         return {name: _plain(value, (*key, str(name)), problems) for name, value in data.items()}
     if isinstance(data, list | tuple):
         return [_plain(value, (*key, index), problems) for index, value in enumerate(data)]

@@ -44,7 +44,7 @@ def parse(settings: Iterable[str]) -> dict[str, Any]:
     return parsed
 
 
-def checked(settings: Mapping[str, Any]) -> dict[str, Any]:
+def checked(settings: Any) -> dict[str, Any]:
     """Settings as Python gives them; an `InputProblem` with the key of those that a spec could not write."""
     if not isinstance(settings, Mapping):
         found = f"{type(settings).__name__}"
