@@ -121,6 +121,28 @@ def test_contradictions_are_refused(changes: dict[str, Any], message: str) -> No
         criterion(**changes)
 
 
+@pytest.mark.parametrize(
+    "changes", [{"max_abs": True}, {"max_abs": "0.3"}, {"strict": 1}, {"strict": "yes"}, {"name": 3}]
+)
+def test_values_of_another_type_are_refused(changes: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        criterion(**changes)
+
+
+def test_whole_numbers_are_numbers() -> None:
+    one = criterion(max_abs=2, published={"new": 1}, chain=[{"sliding_rms": {"window_s": 2}}])
+    assert (one.max_abs, one.published) == (2.0, {"new": 1.0})
+    assert chain_problems(one) == []
+
+
+@pytest.mark.parametrize(
+    "parameters", [{"window_s": True}, {"window_s": "2"}, {"window_s": 2.0, "about_mean": 1}]
+)
+def test_parameters_of_another_type_are_refused(parameters: dict[str, Any]) -> None:
+    [problem] = chain_problems(criterion(chain=[{"sliding_rms": parameters}]))
+    assert problem.key == ("chain", 0, "sliding_rms", list(parameters)[-1])
+
+
 # ---- judging
 
 
@@ -144,6 +166,23 @@ def test_a_value_that_is_none_is_an_error(bad: float | None) -> None:
     assert verdict.outcome is Outcome.ERROR
     assert verdict.message == "a is not finite in 1 of 3 samples, first at t = 0.005 s"
     assert verdict.value is None
+
+
+@pytest.mark.parametrize("lost", [1, 7, slice(3, 5)])
+def test_missing_rows_are_an_error(lost: Any) -> None:
+    whole = frame(a=np.zeros(20))
+    some = whole.filter(~pl.int_range(pl.len()).is_in(np.arange(20)[lost]))
+    assert judge(criterion(), whole, UNITS_OF_FRAME).outcome is Outcome.PASS
+    verdict = judge(criterion(), some, UNITS_OF_FRAME)
+    assert verdict.outcome is Outcome.ERROR
+    assert (verdict.message or "").startswith("t is not evenly spaced")
+
+
+@pytest.mark.parametrize("values", [["0.0", "x"], ["0.0", "1.0"], [True, False], [None, None]])
+def test_a_column_that_holds_no_numbers_is_an_error(values: list[Any]) -> None:
+    verdict = judge(criterion(), frame(a=values), UNITS_OF_FRAME)
+    assert verdict.outcome is Outcome.ERROR
+    assert (verdict.message or "").startswith("a holds no numbers but ")
 
 
 def test_a_nan_on_one_of_several_signals_is_an_error() -> None:

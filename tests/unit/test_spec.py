@@ -58,6 +58,9 @@ def edited(old: str, new: str) -> str:
             "speed_kmh = [10, 0]",
             "12: run.speed_kmh: found [10, 0]; allowed: a number > 0 (km/h), or a list of these",
         ),
+        ("friction = 0.4", "friction = true", "13: run.friction: found true; allowed: a number"),
+        ("friction = 0.4", 'friction = "0.3"', '13: run.friction: found "0.3"; allowed: a number'),
+        ("max_abs = 0.35", "max_abs = true", "22: criterion[0].max_abs: found true; allowed: a number"),
         (
             'speed = "110% design"',
             'speed = "fast"',

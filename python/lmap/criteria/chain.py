@@ -62,7 +62,7 @@ def _by_label(value: Any) -> Any:
 class Criterion(BaseModel):
     """One `[[criterion]]` table."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     name: str = Field(min_length=1)
     signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)

@@ -51,7 +51,7 @@ class Reading:
 class Link(BaseModel, ABC):
     """One link of a chain."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
     name: ClassVar[str]
 
     def written(self) -> dict[str, Any]:
@@ -86,10 +86,16 @@ class Statistic(Link):
 
 
 def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFrame:
-    """The channel `name` of a frame as a signal; refuses what is missing, empty, null, NaN or infinite."""
+    """The channel `name` of a frame as a signal; refuses what is missing, empty, no number or not finite.
+
+    Rows that are not evenly spaced in time are refused too: some are missing.
+    """
     for column in ("t", "s", name):
         if column not in frame.columns:
             raise JudgementProblem(f"the frame has no channel {column}")
+    for column in ("t", "s", name):
+        if not frame.schema[column].is_numeric():
+            raise JudgementProblem(f"{column} holds no numbers but {frame.schema[column]}")
     signal = frame.select(
         pl.col("t").cast(pl.Float64), pl.col("s").cast(pl.Float64), x=pl.col(name).cast(pl.Float64) * factor
     )
@@ -100,6 +106,8 @@ def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFra
         when = bad.item(0, "t")
         place = "" if when is None else f", first at t = {when:.3f} s"
         raise JudgementProblem(f"{name} is not finite in {bad.height} of {signal.height} samples{place}")
+    if signal.height > 1:
+        sample_step(signal)  # a missing row could have been the worst
     return signal
 
 

@@ -93,7 +93,7 @@ class RunPart(BaseModel):
     wheel_profile: Annotated[
         list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
     ] = None
-    friction: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
+    friction: float | None = Field(default=None, ge=0.0, allow_inf_nan=False, strict=True)
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:
