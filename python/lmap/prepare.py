@@ -15,7 +15,7 @@ from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, build, merged
 from lmap.spec.load import LoadedSpec, load
 from lmap.spec.model import Spec
-from lmap.vehicle import Vehicle
+from lmap.vehicle import Vehicle, located
 from lmap.verdict import Fact, InputFile
 
 
@@ -49,7 +49,8 @@ class _Sources:
         """A problem whose key starts at the case, with the file and line where that part is written."""
         part, rest = (str(problem.key[0]) if problem.key else ""), problem.key[1:]
         if part == "vehicle" and rest:
-            return self.vehicle.document.locate(problem, rest)
+            found = located(problem, rest, self.vehicle.document, self.loaded.parameters)
+            return found if found.file is not None else self.loaded.locate(found)
         if part == "track" and rest and not _is_written(self.loaded, problem.key) and self.base is not None:
             base_key: KeyPath = problem.key if isinstance(self.base.data.get("track"), dict) else rest
             return self.base.locate(problem, base_key)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
 from lmap import files, toml
-from lmap.errors import InputProblem, Problem
+from lmap.errors import InputProblem, KeyPath, Problem
 from lmap.spec.case import VehicleData
 
 
@@ -82,4 +83,20 @@ def _located(problem: Problem, document: toml.Document, overrides: Mapping[str, 
     name = ".".join(map(str, tail))
     if name in overrides:
         return Problem(key=("set", name), found=problem.found, allowed=problem.allowed, hint=problem.hint)
-    return document.locate(problem, key)
+    return located(problem, key, document, overrides)
+
+
+def located(problem: Problem, key: KeyPath, document: toml.Document, overrides: Mapping[str, Any]) -> Problem:
+    """A fault at a key of the vehicle's file; where a named parameter gave the number, at the parameter."""
+    given = _FROM.search(problem.found)
+    if given is None:
+        return document.locate(problem, key)
+    if given[1] in overrides:
+        return Problem(key=("set", given[1]), found=problem.found, allowed=problem.allowed, hint=problem.hint)
+    parameters = document.data.get("parameters", {})
+    written = (given[1],) if given[1] in parameters else tuple(given[1].split("."))
+    return document.locate(problem, ("parameters", *written))
+
+
+_FROM = re.compile(r"\(from \$([^\s()]+)\)$")
+"""How the core says that a number came through a reference."""
