@@ -113,7 +113,10 @@ def _procedure(loaded: LoadedSpec) -> Procedure:
 def _vehicle(loaded: LoadedSpec) -> Vehicle:
     spec = loaded.spec
     try:
-        vehicle = Vehicle.load(spec.vehicle, beside=loaded.document.path, overrides=loaded.parameters)
+        # a path is seen from where it is written: the spec's folder, or the caller's
+        from_caller = "vehicle" in loaded.given and files.VEHICLE.is_path(spec.vehicle)
+        beside = Path.cwd() if from_caller else loaded.document.path
+        vehicle = Vehicle.load(spec.vehicle, beside=beside, overrides=loaded.parameters)
         known = vehicle.data.conditions
         if spec.condition is None:
             return vehicle

@@ -162,6 +162,14 @@ def test_faults_of_settings_name_them(settings: dict[str, Any], message: str) ->
     assert str(caught.value).startswith(message)
 
 
+def test_a_vehicle_that_is_set_is_seen_from_the_working_folder() -> None:
+    text = Path("models/vehicles/toy.toml").read_text(encoding="utf-8")
+    Path("mine.toml").write_text(text.replace('name = "toy"', 'name = "mine"', 1), encoding="utf-8")
+    assert prepare(Path("specs/sway.toml"), {"vehicle": "./mine.toml"}).vehicle.data.name == "mine"
+    with pytest.raises(InputProblem, match=r"--set vehicle: found \"\./gone\.toml\", which is no file"):
+        prepare(Path("specs/sway.toml"), {"vehicle": "./gone.toml"})
+
+
 def test_faults_of_a_case_name_the_file_that_holds_the_part() -> None:
     vehicle = Path("models/vehicles/toy.toml")
     vehicle.write_text(

@@ -115,6 +115,20 @@ def test_a_setting_without_key_or_value_is_refused(bad: str) -> None:
         overrides.parse([bad])
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ["a.b=1", "a.b=2"],
+        ["a.b=1", " a.b = 1"],
+        ["run.speed=3", "run.speed_kmh=9"],
+        ["run.speed_kmh=9", "run.speed=3"],
+    ],
+)
+def test_a_key_that_is_set_twice_is_refused(settings: list[str]) -> None:
+    with pytest.raises(InputProblem, match=r"^--set: found .* after .*; allowed: each key once"):
+        overrides.parse(settings)
+
+
 def test_a_setting_that_is_not_finite_is_refused() -> None:
     with pytest.raises(InputProblem, match="--set a: found nan; allowed: a finite number"):
         overrides.parse(["a=nan"])

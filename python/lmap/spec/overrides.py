@@ -34,6 +34,13 @@ def parse(settings: Iterable[str]) -> dict[str, Any]:
             found = f'"{setting}"'
             problems.append(Problem(key=("--set",), found=found, allowed="KEY=VALUE, e.g. secondary.kz=5e5"))
             continue
+        again = next((one for one in (key, _other_speed(key)) if one in parsed), None)
+        if again is not None:
+            found = f'"{setting}" after {again}'
+            problems.append(
+                Problem(key=("--set",), found=found, allowed="each key once, one way of writing it")
+            )
+            continue
         parsed[key] = value(text)
         problems += [
             Problem(key=(f"--set {key}",), found=text, allowed="a finite number")
@@ -42,6 +49,11 @@ def parse(settings: Iterable[str]) -> dict[str, Any]:
     if problems:
         raise InputProblem(problems)
     return parsed
+
+
+def _other_speed(key: str) -> str:
+    """The other way to write the speed; empty for any other key."""
+    return ".".join(_SAME.get(tuple(key.split(".")), ()))
 
 
 def checked(settings: Any) -> dict[str, Any]:
