@@ -38,7 +38,7 @@ $(MODULE): $(SITE) $(RUST)
 
 test: dev
 	cargo test --quiet --no-fail-fast
-	$(BIN)/pytest -m 'not slow' --benchmark-disable
+	$(BIN)/pytest -m 'not slow'
 
 check: format lint types architecture rust pytest
 
@@ -61,11 +61,10 @@ rust:
 	cargo test --quiet --no-fail-fast
 
 pytest: dev
-	$(BIN)/pytest --benchmark-disable
+	$(BIN)/pytest
 
 bench: dev
 	cargo bench
-	$(BIN)/pytest --benchmark-only
 
 clean:
 	cargo clean
