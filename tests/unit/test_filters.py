@@ -48,10 +48,6 @@ def test_zero_phase_lowpass_follows_the_four_pole_closed_form_without_delay(freq
     assert phase == pytest.approx(0.0, abs=1e-3)
 
 
-def test_the_corner_of_the_four_pole_pair_is_raised_by_1_247() -> None:
-    assert 1.0 / (math.sqrt(2.0) - 1.0) ** 0.25 == pytest.approx(1.2465, abs=1e-4)
-
-
 def test_lowpass_keeps_a_constant_and_cuts_one_second_at_each_end() -> None:
     signal = sine(1.0, seconds=10.0).with_columns(x=pl.lit(3.0))
     filtered = Lowpass(cutoff_hz=10.0).apply(signal)

@@ -84,6 +84,14 @@ def test_few_parts_know_the_core(path: Path) -> None:
         assert part in MAY_ASK_FOR_THE_CORE
 
 
+@pytest.mark.parametrize(
+    "path", sorted((PACKAGE / "report").rglob("*.py")), ids=lambda path: path.relative_to(PACKAGE).as_posix()
+)
+def test_the_report_reads_results_and_makes_none(path: Path) -> None:
+    makers = {"simulate", "execute", "procedures", "vehicle", "contact", "spec"}
+    assert imported_parts(path) & makers == set()
+
+
 def test_nothing_imports_the_command_line() -> None:
     others = [path for path in sources() if part_of(path) not in ("cli", "__main__")]
     assert [path for path in others if "cli" in imported_parts(path)] == []
