@@ -87,14 +87,27 @@ impl March {
             let x = 1.0 - step * (f64::from(i) + 0.5);
             let (h, middle) = if i == 0 { (0.5 * step, 1.0 - 0.25 * step) } else { (step, x + 0.5 * step) };
             let parabola = 1.0 - x * x;
+            let mut square = [0.0; LANES];
+            let mut limit_square = [0.0; LANES];
+            let mut slides = false;
             for l in 0..LANES {
-                let hx = qx[l] - h * ax[l];
-                let hy = qy[l] - h * (ay[l] + ey[l] * middle);
+                qx[l] -= h * ax[l];
+                qy[l] -= h * (ay[l] + ey[l] * middle);
                 let g = limit[l] * parabola;
-                // g/|p_H|, cut at 1; the tiny number keeps 0/0 out
-                let scale = (g * g / (hx * hx + hy * hy + f64::MIN_POSITIVE)).min(1.0).sqrt();
-                qx[l] = hx * scale;
-                qy[l] = hy * scale;
+                limit_square[l] = g * g;
+                square[l] = qx[l] * qx[l] + qy[l] * qy[l];
+                slides |= square[l] > limit_square[l];
+            }
+            // Where every strip still sticks the factor is 1 in all of them: division and root are most of the cost.
+            if slides {
+                for l in 0..LANES {
+                    // g/|p_H|, cut at 1; the tiny number keeps 0/0 out
+                    let scale = (limit_square[l] / (square[l] + f64::MIN_POSITIVE)).min(1.0).sqrt();
+                    qx[l] *= scale;
+                    qy[l] *= scale;
+                }
+            }
+            for l in 0..LANES {
                 tx[l] += qx[l];
                 ty[l] += qy[l];
             }
