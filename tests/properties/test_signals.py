@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import numpy.typing as npt
 import polars as pl
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from lmap.errors import JudgementProblem
 from lmap.signals.filters import Lowpass
 from lmap.signals.statistic import AveragePeak, MaxAbs, SlidingMean, Sustained, half_wave_peaks
 
@@ -44,29 +48,52 @@ def test_sustained_is_never_above_the_sliding_mean(x: npt.NDArray[np.float64]) -
     assert held <= mean + 1e-9 * max(1.0, abs(mean))
 
 
-@given(values, st.integers(20, 50))
-def test_average_peak_is_the_brute_force_best_window_and_never_above_the_largest_peak(
-    x: npt.NDArray[np.float64], steps: int
-) -> None:
-    frame, window = signal(x), steps / RATE
-    peaks = half_wave_peaks(frame)
-    t, height = peaks["t"].to_numpy(), peaks["x"].to_numpy()
-    begin, last = frame["t"][0], frame["t"][-1] - window
-    # every subset of neighbouring peaks that fits into a window that fits into the record
+@given(values)
+def test_half_wave_peaks_are_the_largest_sizes_between_crossings(x: npt.NDArray[np.float64]) -> None:
+    frame = signal(x)
+    about = (frame["x"] - frame["x"].mean()).to_list()
+    waves = [list(wave) for _, wave in itertools.groupby(about, key=lambda one: one > 0.0)]
+    assert half_wave_peaks(frame)["x"].to_list() == [max(map(abs, wave)) for wave in waves[1:-1]]
+
+
+def brute_force_average_peak(
+    k: list[int], height: npt.NDArray[np.float64], steps: int, last: int
+) -> float | None:
+    """The best mean over every set of two or more neighbouring peaks that is all that some window holds.
+
+    In samples, so that every comparison is exact: a window is [a, a + steps] for any real 0 <= a <= last.
+    """
     best = None
-    for i in range(len(t)):
-        for j in range(i + 1, len(t)):
-            low, high = max(begin, t[j] - window), min(last, t[i])
-            before = t[i - 1] if i > 0 else -np.inf
-            after = t[j + 1] if j + 1 < len(t) else np.inf
-            if low <= high and max(low, before) < min(high, after - window) - 1e-9:
-                mean = height[i : j + 1].mean()
-                best = mean if best is None else max(best, mean)
+    for i, j in itertools.combinations(range(len(k)), 2):
+        low, high = max(0, k[j] - steps), min(last, k[i])
+        before = k[i - 1] if i > 0 else -1
+        after = k[j + 1] - steps if j + 1 < len(k) else last + 1
+        # the window begins within [low, high], after the peak before and early enough to miss the one after
+        if low <= high and max(low, before) <= min(high, after) and before < min(high, after) and low < after:
+            mean = float(height[i : j + 1].mean())
+            best = mean if best is None else max(best, mean)
+    return best
+
+
+@settings(deadline=None)
+@given(values, st.integers(20, 50))
+def test_average_peak_is_the_brute_force_best_window(x: npt.NDArray[np.float64], steps: int) -> None:
+    frame, link = signal(x), AveragePeak(window_s=steps / RATE)
+    peaks = half_wave_peaks(frame)
+    k = np.rint(peaks["t"].to_numpy() * RATE).astype(int).tolist()
+    height = peaks["x"].to_numpy()
+    best = brute_force_average_peak(k, height, steps, len(x) - 1 - steps)
     if best is None:
+        if not k and (x == x[0]).all():
+            assert link.read(frame).value == 0.0
+            return
+        with pytest.raises(JudgementProblem):
+            link.read(frame)
         return
-    ours = AveragePeak(window_s=window).read(frame).value
-    assert ours <= height.max() * (1.0 + 1e-12)
-    assert ours >= best * (1.0 - 1e-9) or np.isclose(ours, best)
+    ours = link.read(frame).value
+    # nothing but the rounding of sums of up to 400 heights
+    assert abs(ours - best) <= 1e-12 * height.sum()
+    assert ours <= height.max() * (1.0 + 1e-12) + 1e-12 * height.sum()
 
 
 @settings(deadline=None)
