@@ -65,7 +65,7 @@ def test_halving_the_step_moves_no_judged_value_by_more_than_one_per_cent(
 
 
 def test_spiryagin_2013_table_6_irregularity_extremes(compare: Compare) -> None:
-    """One draw against another of the same law: a 1 km record's extremes scatter by 0.8 (vertical), 0.76 (lateral), 0.46
+    """One draw against another of the same law: extremes of 1 km scatter by 0.8 (vertical), 0.76 (lateral), 0.46
     (cross level) and 0.41 mm (gauge), one standard deviation each; three of them are allowed."""
     case = prepare(SPEC, {}).cases[0]
     from lmap import _railsim
