@@ -106,8 +106,7 @@ impl Bushing {
 impl ForceLaw for Bushing {
     #[inline]
     fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
-        let mut wrench =
-            translational(&Vec3::from(self.stiffness), &Vec3::from(self.damping), motion, mount);
+        let mut wrench = translational(&Vec3::from(self.stiffness), &Vec3::from(self.damping), motion, mount);
         if let Some(k) = &self.rotational_stiffness {
             wrench.m -= scale(k, &turned(motion));
         }
