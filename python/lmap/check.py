@@ -166,6 +166,13 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         for index, criterion in enumerate(spec.criterion)
         for case, outcome in zip(prepared.cases, outcomes, strict=True)
     )
+    look = prepared.look
+    if look is not None:
+        criteria += tuple(
+            judge(criterion, look.frame, units, index=index, label=look.label, case_hash=look.hash)
+            for index, criterion in enumerate(spec.criterion)
+        )
+        criteria += (look.by_person,)
     cases = tuple(
         CaseResult(
             label=case.label,
@@ -195,6 +202,7 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         cases=cases,
         inputs=prepared.inputs,
         overrides=prepared.loaded.settings,
+        drawing=None if look is None else look.drawing,
     )
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from lmap.procedures import hunting
-from lmap.procedures.base import CaseFigures, Procedure
+from lmap.procedures import hunting, view
+from lmap.procedures.base import CaseFigures, Look, Looking, Procedure
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (hunting,)
+PROCEDURES: tuple[Procedure, ...] = (hunting, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
-__all__ = ["BY_NAME", "PROCEDURES", "CaseFigures", "Procedure"]
+__all__ = ["BY_NAME", "PROCEDURES", "CaseFigures", "Look", "Looking", "Procedure"]
