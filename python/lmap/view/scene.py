@@ -36,6 +36,7 @@ def scene(
     drawn = {name: [shape.solid() for shape in pieces] for name, pieces in solids.items()}
     groups = {connection.name: _group(connection, model) for connection in model.connections}
     ends = _extent(model, drawn)
+    heaviest = max((body for body in model.bodies if body.radius is None), key=lambda body: body.mass, default=None)
     return {
         "name": model.name,
         "title": model.title,
@@ -47,6 +48,7 @@ def scene(
                 "name": body.name,
                 "at": _round(body.position),
                 "kind": "wheelset" if body.radius is not None else "body",
+                "glass": body is heaviest,
                 "hover": _hover(body.name, _body_lines(body.mass, body.inertia, body.position, body.radius)),
                 "pieces": [_piece(solid) for solid in drawn[body.name]],
             }
