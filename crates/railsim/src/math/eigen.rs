@@ -30,6 +30,9 @@ impl Eigen {
         if matrix.ncols() != n || matrix.iter().any(|v| !v.is_finite()) {
             return None;
         }
+        if n == 0 {
+            return Some(Self { values: Vec::new(), n, vectors: Vec::new() });
+        }
         let mut a = matrix.transpose().as_slice().to_vec(); // row-major
         let scale = balance(&mut a, n);
         let mut v = vec![0.0; n * n];
@@ -37,7 +40,7 @@ impl Eigen {
         let mut schur = Schur { n, h: a, v, re: vec![0.0; n], im: vec![0.0; n] };
         schur.iterate()?;
         schur.back_substitute();
-        for (row, factor) in schur.v.chunks_exact_mut(n.max(1)).zip(&scale) {
+        for (row, factor) in schur.v.chunks_exact_mut(n).zip(&scale) {
             row.iter_mut().for_each(|x| *x *= factor);
         }
         let values = schur.re.iter().zip(&schur.im).map(|(re, im)| Complex::new(*re, *im)).collect();
@@ -354,8 +357,11 @@ impl Schur {
                 let q = (self.re[i] - p).powi(2) + self.im[i].powi(2);
                 let z = (upper * below_r - below_w * r) / q;
                 x[i] = z;
-                x[i + 1] =
-                    if upper.abs() > below_w.abs() { (-r - w * z) / upper } else { (-below_r - lower * z) / below_w };
+                x[i + 1] = if upper.abs() > below_w.abs() {
+                    (-r - w * z) / upper
+                } else {
+                    (-below_r - lower * z) / below_w
+                };
             }
             restrain(&mut x[i..=j]);
         }
@@ -535,9 +541,14 @@ mod tests {
             p
         };
         let n = 5;
-        let a = DMatrix::from_fn(n, n, |i, j| {
-            if j == n - 1 { -expanded[i] } else { f64::from(u8::from(i == j + 1)) }
-        });
+        let a =
+            DMatrix::from_fn(
+                n,
+                n,
+                |i, j| {
+                    if j == n - 1 { -expanded[i] } else { f64::from(u8::from(i == j + 1)) }
+                },
+            );
         let mut found = Eigen::new(&a).unwrap().values;
         found.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
         let expected = [(-3.0, 0.0), (-1.0, -4.0), (-1.0, 4.0), (1.0, 0.0), (2.0, 0.0)];
