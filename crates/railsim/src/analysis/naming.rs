@@ -2,8 +2,8 @@
 //!
 //! The car body is the heaviest body; bogies are the others that a connection ties to a wheelset. Sway of the car body is
 //! *lower* where it turns about a point below its centre of mass and *upper* where that point is above. *Hunting* is a
-//! lateral motion of bogies or wheelsets in which the axles run where they point: their lateral sliding speed is small
-//! beside their lateral speed.
+//! lateral motion in which the axles run where they point (their lateral sliding speed is small beside their lateral speed)
+//! and move at least half as far as the car body above them.
 
 use nalgebra::Complex;
 
@@ -66,7 +66,7 @@ pub(super) fn name(model: &Model, speed: f64, eigenvalue: Complex<f64>, shape: &
         return if d == 0 { "free rolling".into() } else { format!("free {}", WORDS[d]) };
     }
     let running = bogies.total() + axles.total();
-    if speed > 0.0 && running > car.total() && running > track.total() && follows(model, speed, shape) {
+    if speed > 0.0 && running > track.total() && follows(model, speed, shape) {
         let group =
             if bogies.members.is_empty() || axles.total() > 3.0 * bogies.total() { &axles } else { &bogies };
         let e = group.by_direction();
@@ -147,16 +147,25 @@ fn member(model: &Model, i: usize, shape: &[Complex<f64>]) -> Member {
     m
 }
 
-/// Whether the axles run where they point.
+/// Largest square of the car body's lateral motion over that of the axles below it: more is the body's own sway.
+const CARRIED: f64 = 4.0;
+
+/// Whether the axles run where they point, and the car body does not move much farther than they do.
 fn follows(model: &Model, speed: f64, shape: &[Complex<f64>]) -> bool {
     let map = model.map();
-    let (mut sliding, mut lateral) = (0.0, 0.0);
+    let (mut sliding, mut lateral, mut axles, mut above) = (0.0, 0.0, 0.0, 0.0);
+    let heaviest = (0..map.bodies).max_by(|a, b| model.rigid(*a).mass.total_cmp(&model.rigid(*b).mass));
     for i in map.bodies..model.count() {
         let (vy, psi) = (shape[map.u(i).start + Y], shape[map.q(i).start + PSI]);
         sliding += (vy - speed * psi).norm_sqr();
         lateral += vy.norm_sqr();
+        axles += shape[map.q(i).start + Y].norm_sqr();
+        if let Some(car) = heaviest {
+            let (q, apart) = (map.q(car).start, model.rigid(i).position.x - model.rigid(car).position.x);
+            above += (shape[q + Y] + shape[q + PSI] * apart).norm_sqr();
+        }
     }
-    lateral > 0.0 && sliding < FOLLOWING * lateral
+    lateral > 0.0 && sliding < FOLLOWING * lateral && above < CARRIED * axles
 }
 
 fn car_body(model: &Model, car: &Group, direction: usize, shape: &[Complex<f64>]) -> String {

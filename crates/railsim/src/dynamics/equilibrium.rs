@@ -18,6 +18,8 @@ use crate::integrator::System;
 
 /// Largest acceleration left, m/s2 or rad/s2: a hundred times the rounding of the stiffest spring's force.
 const TOLERANCE: f64 = 1e-7;
+/// Largest acceleration left where rounding of stiffer springs lets no step get below [`TOLERANCE`].
+const ROUNDING: f64 = 1e-5;
 const MOST_ITERATIONS: usize = 40;
 /// Implicit steps of a relaxation, at most.
 const MOST_RELAXATIONS: usize = 300;
@@ -287,7 +289,15 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
             loop {
                 self.shift_all(&step, -factor);
                 self.residual(&mut trial);
-                if trial.norm() < old || factor < 1e-3 {
+                if trial.norm() < old {
+                    break;
+                }
+                if factor < 1e-3 {
+                    if size(&r) < ROUNDING {
+                        self.shift_all(&step, factor);
+                        self.set_speeds();
+                        return Ok(());
+                    }
                     break;
                 }
                 self.shift_all(&step, factor);
