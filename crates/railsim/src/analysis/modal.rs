@@ -37,7 +37,8 @@ pub struct Mode {
     pub name: String,
     /// Eigenvalue, 1/s and rad/s; of a conjugate pair the one with the positive imaginary part.
     pub eigenvalue: Complex<f64>,
-    /// Displacements and speeds, laid out as the state. The largest coordinate (m, rad) is 1 and real.
+    /// Displacements (m, rad) and speeds, laid out as the state. The most moved coordinate is 1 and real: an axle's turned angle
+    /// counts by the travel of its rim.
     pub shape: Vec<Complex<f64>>,
     /// Number of the root locus that it belongs to, from 1.
     pub branch: usize,
@@ -101,7 +102,7 @@ pub fn modes(model: &Model, system: &mut VehicleSystem<'_>, x: &[f64], held: &[u
                 shape[*i] = value;
             }
             turn_axles(model, speed, eigenvalue, &mut shape);
-            normalise(&mut shape, &coordinates);
+            normalise(model, &mut shape, &coordinates);
             let name = naming::name(model, speed, eigenvalue, &shape);
             Mode { name, eigenvalue, shape, branch: 0 }
         })
@@ -203,10 +204,17 @@ fn turn_axles(model: &Model, speed: f64, eigenvalue: Complex<f64>, shape: &mut [
     }
 }
 
-/// Makes the largest coordinate 1; of a motion without displacement (free rolling) the largest speed.
-fn normalise(shape: &mut [Complex<f64>], coordinates: &[Coordinate]) {
+/// Makes the largest coordinate 1 and real, angles over a lever of 1 m, those that axles turn by over the wheel's radius; of a
+/// motion without displacement (free rolling) the largest speed.
+fn normalise(model: &Model, shape: &mut [Complex<f64>], coordinates: &[Coordinate]) {
+    let first = 6 * model.bodies.len();
+    let lever = |k: usize| match k.checked_sub(first).map(|k| (k / 6, k % 6)) {
+        Some((w, THETA)) if w < model.wheelsets.len() => model.wheelsets[w].radius,
+        _ => 1.0,
+    };
     let largest = |index: fn(&Coordinate) -> usize| {
-        coordinates.iter().map(|c| shape[index(c)]).max_by(|a, b| a.norm().total_cmp(&b.norm()))
+        let travel = coordinates.iter().enumerate().map(|(k, c)| shape[index(c)] * lever(k));
+        travel.max_by(|a, b| a.norm().total_cmp(&b.norm()))
     };
     let unit = largest(|c| c.q).filter(|v| v.norm() > 1e-12).or_else(|| largest(|c| c.u));
     if let Some(unit) = unit.filter(|v| v.norm() > 0.0) {
