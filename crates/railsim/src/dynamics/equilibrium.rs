@@ -137,7 +137,7 @@ fn newton(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, speed: f64) -> Resul
     let rolling = speed > 0.0;
     let mut unknowns = Vec::new();
     let mut equations = Vec::new();
-    for i in 0..model.count() {
+    for i in (0..model.count()).filter(|i| !model.guided.contains(i)) {
         let wheelset = i.checked_sub(model.bodies.len());
         for d in 0..6 {
             match wheelset {

@@ -1,7 +1,7 @@
 //! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
 
-use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, wheelset};
-use crate::connection::{ForceLaw, Pair, Relative};
+use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, steady_speeds, wheelset};
+use crate::connection::{Pair, Relative};
 use crate::contact::creep::{Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
 use crate::contact::geometry_table::ContactPoint;
@@ -83,6 +83,17 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    /// Guided bodies keep their place in the track frame, which moves at the speed asked for.
+    fn guide_stage(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        for &i in &self.model.guided {
+            let q = &x[self.map.q(i)];
+            let frame = self.model.layout.frame(q[0]);
+            let u = steady_speeds(q, &frame, self.program.at(t).1, 0.0, false);
+            let k = &mut self.scratch.kinematics[i];
+            kinematics(q, &u, frame, false, self.level, &mut dx[self.map.q(i)], k);
+        }
+    }
+
     fn contact_stage(&mut self, x: &[f64]) {
         let first = self.model.bodies.len();
         let scratch = &mut self.scratch;
@@ -128,7 +139,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
-    fn connection_stage(&mut self) {
+    fn connection_stage(&mut self, x: &[f64], dx: &mut [f64]) {
         let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
         for joint in &self.model.joints {
             let links = &self.model.links[joint.clone()];
@@ -136,9 +147,12 @@ impl<'m> VehicleSystem<'m> {
             let motion = Relative::between(&kinematics[a].pose, &kinematics[b].pose);
             let mut sum = Wrench::zero();
             for link in links {
-                let one = link.law.wrench(&motion, &link.mount);
+                let one = link.wrench(&motion, x);
                 sum.f += one.f;
                 sum.m += one.m;
+                if !link.memory.is_empty() {
+                    link.memory_rates(&motion, x, dx);
+                }
             }
             let pair = Pair::new(&sum, &motion, &kinematics[a].pose.R);
             wrench[a].f += pair.on_A.f;
@@ -169,6 +183,10 @@ impl<'m> VehicleSystem<'m> {
             } else {
                 wheelset::rotate(k, &body.inertia, wrench, &self.scratch.wheel_moment[i - first], du);
             }
+        }
+        for &i in &self.model.guided {
+            dx[self.map.u(i)].fill(0.0);
+            dx[self.map.u(i).start] = self.program.acceleration;
         }
         for w in 0..self.model.wheelsets.len() {
             let (tq, tu) = (self.map.track_q(w), self.map.track_u(w));
@@ -327,8 +345,9 @@ impl System for VehicleSystem<'_> {
 
     fn rhs(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.kinematics_stage(x, dx);
+        self.guide_stage(t, x, dx);
         self.contact_stage(x);
-        self.connection_stage();
+        self.connection_stage(x, dx);
         self.speed_hold_stage(t, x);
         self.acceleration_stage(x, dx);
     }
