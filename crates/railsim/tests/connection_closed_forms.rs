@@ -90,7 +90,8 @@ fn point_spring_hooke() {
 
 #[test]
 fn point_damper_newton() {
-    let damper = law(json!({ "kind": "point_damper", "table": { "x": [0.0, 0.1, 0.5], "f": [0.0, 8e3, 1.2e4] } }));
+    let damper =
+        law(json!({ "kind": "point_damper", "table": { "x": [0.0, 0.1, 0.5], "f": [0.0, 8e3, 1.2e4] } }));
     let b = Pose { v: Vec3::new(0.3, 5.0, 0.0), ..Pose::at(Vec3::new(0.5, 0.0, 0.0)) };
     close(on_b(&damper, &ends([0.5, 0.0, 0.0]), &b, &[]).0.x, -1e4, 1e-12, "beyond blow-off");
 }
@@ -110,7 +111,12 @@ fn maxwell_complex_stiffness() {
                 ..Pose::at(Vec3::new(amplitude * (w * t).sin(), 0.0, 0.0))
             };
             let mut rates = [0.0];
-            element.memory_rates(&Relative::between(&Pose::at(Vec3::zeros()), &pose), &mount, &[z], &mut rates);
+            element.memory_rates(
+                &Relative::between(&Pose::at(Vec3::zeros()), &pose),
+                &mount,
+                &[z],
+                &mut rates,
+            );
             rates[0]
         };
         // Ten time constants c/k and a whole number of periods, then one period's Fourier coefficients.
@@ -291,7 +297,8 @@ fn friction_plate_opposes_sliding() {
 /// The friction of a carrying plate follows its load.
 #[test]
 fn friction_plate_under_its_spring() {
-    let written = json!({ "kind": "friction_plate", "coefficient": 0.2, "stiffness": 5e6, "normal_stiffness": 2e6 });
+    let written =
+        json!({ "kind": "friction_plate", "coefficient": 0.2, "stiffness": 5e6, "normal_stiffness": 2e6 });
     let plate = law(written);
     let mut mount = ends([0.0; 3]);
     plate.settle(&mut mount, Some(&Vec3::new(0.0, 0.0, -3e4))).unwrap();

@@ -201,7 +201,8 @@ fn every_kind_is_listed_sorted_and_has_an_example() {
 #[test]
 fn a_bushing_in_its_design_position_gives_its_preload() {
     let preload = Vec3::new(100.0, -200.0, -5e4);
-    let mount = Mount { preload, ..Mount::new(Vec3::new(1.0, 0.5, -0.2), Vec3::new(0.4, -0.1, 0.3), Vec3::zeros()) };
+    let mount =
+        Mount { preload, ..Mount::new(Vec3::new(1.0, 0.5, -0.2), Vec3::new(0.4, -0.1, 0.3), Vec3::zeros()) };
     let (a, b) = (Pose::at(Vec3::zeros()), Pose::at(mount.p_A - mount.p_B));
     for law in Law::examples().into_iter().filter(|l| matches!(l, Law::Bushing(_))) {
         assert!((wrench(&law, &a, &b, &mount, &REST).on_B.f - preload).norm() < 1e-9);
@@ -212,7 +213,8 @@ fn a_bushing_in_its_design_position_gives_its_preload() {
 #[test]
 fn a_displaced_preload_turns_both_bodies_by_half_its_couple() {
     let p = 1.0e5;
-    let mount = Mount { preload: Vec3::new(0.0, 0.0, -p), ..Mount::new(Vec3::zeros(), Vec3::zeros(), Vec3::zeros()) };
+    let mount =
+        Mount { preload: Vec3::new(0.0, 0.0, -p), ..Mount::new(Vec3::zeros(), Vec3::zeros(), Vec3::zeros()) };
     let law = Law::Bushing(Bushing::examples().remove(0));
     let y = 0.01;
     let (a, b) = (Pose::at(Vec3::zeros()), Pose::at(Vec3::new(0.0, y, 0.0)));
@@ -258,7 +260,10 @@ fn parameters_outside_their_range_are_refused_by_key() {
         (json!({ "kind": "point_spring", "stiffness": 1.0, "table": level }), vec!["table"]),
         (json!({ "kind": "point_spring", "table": falling }), vec!["table.f[1]"]),
         (json!({ "kind": "point_spring", "stiffness": 1.0, "free_length": 0.0 }), vec!["free_length"]),
-        (json!({ "kind": "point_spring", "stiffness": 1.0, "free_length": 0.5, "along": "z" }), vec!["free_length"]),
+        (
+            json!({ "kind": "point_spring", "stiffness": 1.0, "free_length": 0.5, "along": "z" }),
+            vec!["free_length"],
+        ),
         (json!({ "kind": "point_damper", "damping": -1.0 }), vec!["damping"]),
         (json!({ "kind": "maxwell", "stiffness": 0.0, "damping": 0.0 }), vec!["stiffness", "damping"]),
         (json!({ "kind": "maxwell", "stiffness": 1.0, "table": level }), vec!["table.f[2]"]),
@@ -266,7 +271,10 @@ fn parameters_outside_their_range_are_refused_by_key() {
             json!({ "kind": "maxwell", "stiffness": 1.0, "table": { "x": [0.0, 1.0], "f": [0.0, 1.0], "interpolation": "pchip" } }),
             vec!["table.interpolation"],
         ),
-        (json!({ "kind": "bump_stop", "clearance": -1.0, "cubic": -1.0, "stiffness": 1.0 }), vec!["clearance", "cubic"]),
+        (
+            json!({ "kind": "bump_stop", "clearance": -1.0, "cubic": -1.0, "stiffness": 1.0 }),
+            vec!["clearance", "cubic"],
+        ),
         (
             json!({ "kind": "bump_stop", "clearance": 0.0, "table": { "x": [-1.0, 0.0], "f": [-1.0, 0.0] } }),
             vec!["table.x[0]"],
@@ -277,8 +285,14 @@ fn parameters_outside_their_range_are_refused_by_key() {
             vec!["coefficient", "stiffness", "normal_stiffness", "load"],
         ),
         (json!({ "kind": "traction_rod", "stiffness": 1.0, "damping": -1.0 }), vec!["damping"]),
-        (json!({ "kind": "coupler", "stiffness": 1.0, "slack": -1.0, "damping": -1.0 }), vec!["slack", "damping"]),
-        (json!({ "kind": "anti_roll_bar", "stiffness": -1.0, "damping": -1.0 }), vec!["stiffness", "damping"]),
+        (
+            json!({ "kind": "coupler", "stiffness": 1.0, "slack": -1.0, "damping": -1.0 }),
+            vec!["slack", "damping"],
+        ),
+        (
+            json!({ "kind": "anti_roll_bar", "stiffness": -1.0, "damping": -1.0 }),
+            vec!["stiffness", "damping"],
+        ),
         (
             json!({ "kind": "shear_spring", "axial": -1.0, "shear": -1.0, "bending": -1.0, "torsion": -1.0, "damping": [0.0, -1.0, 0.0], "shear_centre": 2.0 }),
             vec!["axial", "shear", "bending", "torsion", "damping[1]", "shear_centre"],

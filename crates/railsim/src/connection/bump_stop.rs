@@ -55,7 +55,13 @@ impl BumpStop {
         let table = Table::linear(&[[0.0, 0.0], [0.01, 2e3], [0.02, 1e4], [0.03, 6e4]]);
         vec![
             Self { clearance: 0.02, stiffness: Some(2e5), cubic: 1e9, ..Self::default() },
-            Self { clearance: 0.03, table: Some(table), side: Side::Both, along: Along::Y, ..Self::default() },
+            Self {
+                clearance: 0.03,
+                table: Some(table),
+                side: Side::Both,
+                along: Along::Y,
+                ..Self::default()
+            },
             Self { clearance: 0.01, stiffness: Some(1e6), side: Side::Pulled, ..Self::default() },
         ]
     }
@@ -112,7 +118,11 @@ impl ForceLaw for BumpStop {
         if let Some(table) = &self.table
             && !table.is_odd()
         {
-            faults.push(Fault::new(at.key("table").key("x").index(0), table.x[0].to_string(), "0 m: where it is met"));
+            faults.push(Fault::new(
+                at.key("table").key("x").index(0),
+                table.x[0].to_string(),
+                "0 m: where it is met",
+            ));
         }
         faults
     }

@@ -121,7 +121,8 @@ impl BushingMatrix {
     #[must_use]
     pub fn mirrored(&self) -> Self {
         const SIDE: [f64; 6] = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
-        let mirror = |m: &[[f64; 6]; 6]| std::array::from_fn(|i| std::array::from_fn(|j| SIDE[i] * m[i][j] * SIDE[j]));
+        let mirror =
+            |m: &[[f64; 6]; 6]| std::array::from_fn(|i| std::array::from_fn(|j| SIDE[i] * m[i][j] * SIDE[j]));
         Self { stiffness: mirror(&self.stiffness), damping: mirror(&self.damping) }
     }
 }
@@ -134,9 +135,12 @@ fn times(m: &[[f64; 6]; 6], q: &Vector6<f64>) -> Vector6<f64> {
 impl ForceLaw for BushingMatrix {
     #[inline]
     fn wrench(&self, motion: &Relative, mount: &Mount, _memory: &[f64]) -> Wrench {
-        Coupled::of(motion, &mount.p_A, &mount.p_B).wrench(&motion.R_AB, &mount.p_A, &mount.preload, |q, rate| {
-            times(&self.stiffness, q) + times(&self.damping, rate)
-        })
+        Coupled::of(motion, &mount.p_A, &mount.p_B).wrench(
+            &motion.R_AB,
+            &mount.p_A,
+            &mount.preload,
+            |q, rate| times(&self.stiffness, q) + times(&self.damping, rate),
+        )
     }
 
     fn energy(&self, motion: &Relative, mount: &Mount, _memory: &[f64]) -> f64 {

@@ -182,13 +182,18 @@ impl ForceLaw for FrictionPlate {
         let [i, j, k] = self.axes();
         match force {
             Some(force) if force[j] != 0.0 || force[k] != 0.0 => {
-                return Err(format!("{:.0} N across its normal, which friction does not hold by itself", force[j].hypot(force[k])));
+                return Err(format!(
+                    "{:.0} N across its normal, which friction does not hold by itself",
+                    force[j].hypot(force[k])
+                ));
             }
             Some(force) => mount.preload = *force,
             None => {}
         }
         if self.normal_stiffness > 0.0 && mount.preload[i] == 0.0 {
-            return Err("no load in the design position, which would tell the side on which it touches".into());
+            return Err(
+                "no load in the design position, which would tell the side on which it touches".into()
+            );
         }
         Ok(())
     }

@@ -18,6 +18,7 @@ mod bushing_matrix;
 mod coupler;
 mod friction;
 mod friction_plate;
+pub mod lanes;
 mod maxwell;
 mod point_damper;
 mod point_spring;
@@ -80,7 +81,7 @@ pub struct Pair {
 
 impl Pair {
     /// From the wrench on B about A's centre of mass in A's axes, as [`ForceLaw::wrench`] gives it.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn new(on_B_about_A: &Wrench, motion: &Relative, R_IA: &Mat3) -> Self {
         let f = R_IA * on_B_about_A.f;
@@ -203,7 +204,7 @@ family! {
 }
 
 impl ForceLaw for Law {
-    #[inline]
+    #[inline(always)]
     fn wrench(&self, motion: &Relative, mount: &Mount, memory: &[f64]) -> Wrench {
         each!(self, law => law.wrench(motion, mount, memory))
     }

@@ -60,7 +60,8 @@ pub(super) fn stretched(
     match (force, free_length) {
         (Some(force), _) => {
             let tension = -force.dot(&along.direction(&mount.between));
-            law.inverse(tension).ok_or_else(|| format!("{tension:.0} N, which its characteristic never reaches"))
+            law.inverse(tension)
+                .ok_or_else(|| format!("{tension:.0} N, which its characteristic never reaches"))
         }
         (None, Some(free)) => Ok(mount.between.norm() - free),
         (None, None) => Ok(0.0),

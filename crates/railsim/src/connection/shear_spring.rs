@@ -52,8 +52,14 @@ impl ShearSpring {
     /// Examples for the contract suite.
     #[must_use]
     pub fn examples() -> Vec<Self> {
-        let spring =
-            Self { axial: 4.3e5, shear: 1.6e5, bending: 1.05e4, torsion: 2e3, damping: [0.0, 3e3, 2e3], shear_centre: 0.5 };
+        let spring = Self {
+            axial: 4.3e5,
+            shear: 1.6e5,
+            bending: 1.05e4,
+            torsion: 2e3,
+            damping: [0.0, 3e3, 2e3],
+            shear_centre: 0.5,
+        };
         vec![spring.clone(), Self { shear_centre: 0.3, ..spring }]
     }
 

@@ -181,8 +181,6 @@ pub struct Model {
     /// Bodies that move along the design track at the speed asked for, whatever acts on them.
     pub guided: Vec<usize>,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
-    /// Runs of links between the same two bodies.
-    pub(crate) joints: Vec<Range<usize>>,
     memory: usize,
 }
 
@@ -205,13 +203,6 @@ impl Model {
         gravity: f64,
     ) -> Result<Self> {
         links.sort_by_key(|l| (l.a, l.b));
-        let mut joints: Vec<Range<usize>> = Vec::new();
-        for (i, link) in links.iter().enumerate() {
-            match joints.last_mut() {
-                Some(run) if (links[run.start].a, links[run.start].b) == (link.a, link.b) => run.end = i + 1,
-                _ => joints.push(i..i + 1),
-            }
-        }
         let mut map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len(), memory: 0 };
         let first = map.size();
         for link in &mut links {
@@ -238,7 +229,6 @@ impl Model {
             gravity,
             guided: Vec::new(),
             stiff_blocks,
-            joints,
             memory: map.memory,
         })
     }

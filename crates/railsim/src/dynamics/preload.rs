@@ -89,15 +89,11 @@ pub fn solve(
         ))
     })?;
     let residual = &stiffness * &u - &load;
-    if let Some((i, body)) = bodies
-        .iter()
-        .enumerate()
-        .find(|(i, b)| {
-            // In proportion to the largest load too: a light body may carry a heavy one.
-            let size = (b.mass * gravity.max(1.0)).max(1e-3 * load.amax());
-            residual.rows(6 * i, 6).amax() > 1e-6 * size
-        })
-    {
+    if let Some((i, body)) = bodies.iter().enumerate().find(|(i, b)| {
+        // In proportion to the largest load too: a light body may carry a heavy one.
+        let size = (b.mass * gravity.max(1.0)).max(1e-3 * load.amax());
+        residual.rows(6 * i, 6).amax() > 1e-6 * size
+    }) {
         return Err(Error::input(
             Fault::new(
                 KeyPath::of("vehicle.connection"),
@@ -132,7 +128,11 @@ fn settle(
     for (i, (link, _)) in links.iter_mut().zip(carries).enumerate().filter(|(_, (_, c))| **c) {
         let force = share(link);
         link.settle(Some(&force)).map_err(|found| {
-            Error::input(Fault::new(key(i).key("carries_weight"), found, "a load that this connection reaches"))
+            Error::input(Fault::new(
+                key(i).key("carries_weight"),
+                found,
+                "a load that this connection reaches",
+            ))
         })?;
     }
     Ok(())

@@ -116,7 +116,9 @@ impl Table {
     pub fn least_slope(&self) -> f64 {
         // Cubics of Fritsch and Butland lie below their secants somewhere; a lower bound is enough, and 0 is one.
         match self.interpolation {
-            Interpolation::Linear => (0..self.x.len() - 1).map(|i| self.secant(i)).fold(f64::INFINITY, f64::min),
+            Interpolation::Linear => {
+                (0..self.x.len() - 1).map(|i| self.secant(i)).fold(f64::INFINITY, f64::min)
+            }
             Interpolation::Pchip => 0.0,
         }
     }
@@ -223,7 +225,8 @@ impl Table {
     #[must_use]
     pub fn faults(&self, at: &KeyPath, strict: bool) -> Vec<Fault> {
         let mut faults = Vec::new();
-        let mut refuse = |key: KeyPath, found: String, allowed: &str| faults.push(Fault::new(key, found, allowed));
+        let mut refuse =
+            |key: KeyPath, found: String, allowed: &str| faults.push(Fault::new(key, found, allowed));
         for (key, values) in [("x", &self.x), ("f", &self.f)] {
             if values.len() < 2 {
                 refuse(at.key(key), format!("{} points", values.len()), "2 points or more");
@@ -291,7 +294,9 @@ mod tests {
     #[test]
     fn slope_and_integral_fit_the_value_and_the_inverse_finds_back() {
         let odd = &points()[2..];
-        for table in [Table::linear(&points()), Table::pchip(&points()), Table::linear(odd), Table::pchip(odd)] {
+        for table in
+            [Table::linear(&points()), Table::pchip(&points()), Table::linear(odd), Table::pchip(odd)]
+        {
             assert!(table.faults(&KeyPath::default(), false).is_empty());
             assert_eq!(table.integral(0.0), 0.0);
             for i in -97..=113 {

@@ -10,9 +10,9 @@
 use nalgebra::DMatrix;
 
 use crate::connection::ForceLaw;
-use crate::dynamics::{Link, Model, VehicleSystem};
 use crate::dynamics::linearise::jacobian;
 use crate::dynamics::state::PAIR;
+use crate::dynamics::{Link, Model, VehicleSystem};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::{Integrator, ROS2_GAMMA, System};
 
