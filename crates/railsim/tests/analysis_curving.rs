@@ -222,7 +222,7 @@ fn a_rigid_vehicle_unloads_and_rolls_over_as_in_closed_form() {
     while step > 0.02 {
         let mut system = stand.system(v);
         let mut trial = x.clone();
-        let conditions = Conditions { speed: v, held: &[], push: &[] };
+        let conditions = Conditions { speed: v, held: &[], push: &[], since: None };
         if equilibrium::newton(&mut system, &mut trial, conditions).is_err() {
             v -= step;
             step *= 0.5;

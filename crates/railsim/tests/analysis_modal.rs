@@ -68,7 +68,8 @@ fn modes_on_a_wall(model: &Model, speed: f64, more: &[usize]) -> Vec<Mode> {
     let mut x = equilibrium::design_state(model, 0.0);
     let mut system = equilibrium::standing(model, 0.0);
     equilibrium::roll(&mut system, speed);
-    equilibrium::settle(&mut system, &mut x, Conditions { speed, held: &held, push: &[] }).unwrap();
+    equilibrium::settle(&mut system, &mut x, Conditions { speed, held: &held, push: &[], since: None })
+        .unwrap();
     modes(model, &mut system, &x, &held).unwrap()
 }
 

@@ -127,6 +127,9 @@ fn reduce(model: &Model, system: &mut VehicleSystem<'_>, x: &[f64], held: &[usiz
     for c in coordinate::all(model).iter().filter(|c| held.contains(&c.q)) {
         gone.extend([c.q, c.u]);
     }
+    for i in &model.guided {
+        gone.extend(map.q(*i).chain(map.u(*i)));
+    }
     for w in 0..model.wheelsets.len() {
         if model.support.is_none() {
             gone.extend(map.track_q(w).chain(map.track_u(w)));
@@ -136,7 +139,7 @@ fn reduce(model: &Model, system: &mut VehicleSystem<'_>, x: &[f64], held: &[usiz
         }
     }
     let place = map.q(model.reference()).start + S;
-    if model.speed_hold.is_none() && model.count() > 0 && !held.contains(&place) {
+    if model.place_is_free() && !held.contains(&place) {
         count_from_reference(model, standing, place, &mut matrix);
         gone.push(place);
     }

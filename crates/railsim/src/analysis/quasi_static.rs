@@ -176,6 +176,7 @@ fn balance(
     speed: f64,
 ) -> Result<Vec<f64>> {
     let mut push = Vec::new();
+    let before = x.clone();
     for (action, value) in actions.iter().zip(values) {
         match action {
             Action::Force { push: unit, .. } => push.extend(unit.iter().map(|(i, by)| (*i, by * value))),
@@ -184,7 +185,8 @@ fn balance(
         }
     }
     let mut system = stand.system(speed);
-    equilibrium::settle(&mut system, x, Conditions { speed, held, push: &push })?;
+    let since = (stand.model.map().memory > 0).then_some(&before[..]);
+    equilibrium::settle(&mut system, x, Conditions { speed, held, push: &push, since })?;
     let mut dx = vec![0.0; x.len()];
     system.rhs(0.0, x, &mut dx);
     let mut recorder = Recorder::new(&stand.model, 1);

@@ -109,7 +109,7 @@ impl Stand {
         let mut x = equilibrium::design_state(&self.model, self.s);
         let held = self.held.clone();
         for v in [0.0, speed] {
-            let conditions = Conditions { speed: v, held: &held, push: &[] };
+            let conditions = Conditions { speed: v, held: &held, push: &[], since: None };
             equilibrium::settle(&mut self.system(v), &mut x, conditions)?;
             if speed == 0.0 {
                 break;
@@ -120,7 +120,7 @@ impl Stand {
 
     fn enter_curve(&mut self, mut x: Vec<f64>, speed: f64) -> Result<Vec<f64>> {
         let held = self.held.clone();
-        let conditions = Conditions { speed, held: &held, push: &[] };
+        let conditions = Conditions { speed, held: &held, push: &[], since: None };
         let (mut done, mut share) = (0.0_f64, FIRST_SHARE);
         while done < 1.0 {
             let next = (done + share).min(1.0);

@@ -43,7 +43,13 @@ pub struct Conditions<'a> {
     pub held: &'a [usize],
     /// Accelerations (m/s2, rad/s2) that loads from outside add to speeds (indices into the state).
     pub push: &'a [(usize, f64)],
+    /// The balance before this one, from which what connections remember is followed along the way here; without it they
+    /// remember what they did.
+    pub since: Option<&'a [f64]>,
 }
+
+/// Time that a way from one balance to the next takes, s: so slow that dampers carry nothing.
+const WAY: f64 = 1e3;
 
 struct Problem<'s, 'm, 'c> {
     system: &'s mut VehicleSystem<'m>,
@@ -72,11 +78,32 @@ impl Problem<'_, '_, '_> {
         }
     }
 
+    /// Adds the slow speeds of the way from the balance before.
+    fn creep_from(&mut self, before: &[f64]) {
+        let map = self.system.model.map();
+        let spins = self.system.model.bodies.len();
+        for i in 0..self.system.model.count() {
+            let (q, u) = (map.q(i).start, map.u(i).start);
+            for d in (0..6).filter(|d| i < spins || *d != coordinate::THETA) {
+                self.x[u + d] += (self.x[q + d] - before[q + d]) / WAY;
+            }
+        }
+    }
+
     fn residual(&mut self, out: &mut DVector<f64>) {
         self.set_speeds();
+        if let Some(before) = self.conditions.since {
+            self.creep_from(before);
+        }
         self.system.rhs(0.0, &self.x, &mut self.dx);
         for (speed, by) in self.conditions.push {
             self.dx[*speed] += by;
+        }
+        if let Some(before) = self.conditions.since {
+            // One implicit Euler step: the equation of a memory stands at its own place, times the step.
+            for i in self.system.model.map().memory() {
+                self.dx[i] = WAY * self.dx[i] - (self.x[i] - before[i]);
+            }
         }
         for (r, e) in out.iter_mut().zip(&self.equations) {
             *r = self.dx[*e];
@@ -160,7 +187,7 @@ pub fn newton(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, conditions: Cond
 fn with_free_place(model: &Model, held: &[usize]) -> Vec<usize> {
     let mut held = held.to_vec();
     let place = model.map().q(model.reference()).start;
-    if model.speed_hold.is_none() && model.count() > 0 && !held.contains(&place) {
+    if model.place_is_free() && !held.contains(&place) {
         held.push(place);
     }
     held
@@ -217,7 +244,7 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
         let map = model.map();
         let rolling = conditions.speed > 0.0;
         let mut pairs = Vec::new();
-        for i in 0..model.count() {
+        for i in (0..model.count()).filter(|i| !model.guided.contains(i)) {
             for d in 0..6 {
                 let (q, u) = (map.q(i).start + d, map.u(i).start + d);
                 match i.checked_sub(model.bodies.len()) {
@@ -234,6 +261,9 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
             for w in 0..model.wheelsets.len() {
                 pairs.extend(map.track_q(w).zip(map.track_u(w)).map(|(q, u)| (q, Unknown::State(q), u)));
             }
+        }
+        if conditions.since.is_some() {
+            pairs.extend(map.memory().map(|i| (i, Unknown::State(i), i)));
         }
         pairs.retain(|(q, ..)| !conditions.held.contains(q));
         let (unknowns, equations) = pairs.into_iter().map(|(_, unknown, u)| (unknown, u)).unzip();

@@ -8,6 +8,7 @@ pub mod hermite;
 pub mod quadrature;
 pub mod rotation;
 pub mod small_lu;
+pub mod table;
 
 /// Column of three.
 pub type Vec3 = nalgebra::Vector3<f64>;

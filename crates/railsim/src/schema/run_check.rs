@@ -15,6 +15,9 @@ const OWNED: [(&str, &[RunKind]); 6] = [
     ("search", &[RunKind::CriticalSpeed]),
 ];
 
+/// Speeds that a search looks at, at most; more is a slip of the pen.
+const MOST_SPEEDS: f64 = 1000.0;
+
 /// Every fault of relation; those of structure are said elsewhere.
 pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
     // A key that is missing or out of range is said by the structural check, and there is no telling the rest.
@@ -94,15 +97,22 @@ fn loads(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
 fn searching(node: &Node, run: &Run, search: &Search, faults: &mut Vec<Fault>) {
     let Some(table) = node.get("search") else { return };
     match search {
-        Search::Linear { range, .. } => {
+        Search::Linear { range, spacing } => {
             if range[0] >= range[1] {
                 at(table, "range", "the lower speed first, m/s", faults);
+            } else if spacing.is_some_and(|d| range[1] - range[0] > MOST_SPEEDS * d) {
+                at(table, "spacing", &format!("at most {MOST_SPEEDS} speeds in the range"), faults);
             }
         }
         Search::RampDown { end_speed, disturbance, .. }
         | Search::Bifurcation { end_speed, disturbance, .. } => {
             if *end_speed >= run.speed {
                 at(table, "end_speed", &format!("below run.speed = {} m/s", run.speed), faults);
+            }
+            if let Search::Bifurcation { speed_step, .. } = search
+                && run.speed - end_speed > MOST_SPEEDS * speed_step
+            {
+                at(table, "speed_step", &format!("at most {MOST_SPEEDS} speeds"), faults);
             }
             if disturbance.values().all(|v| *v == 0.0) {
                 let allowed =

@@ -33,11 +33,11 @@ pub(super) fn on_straight_track(model: &Model) -> Result<()> {
             "straight level track: the speed is changed over kilometres of it",
         )));
     }
-    if model.speed_hold.is_none() {
+    if model.place_is_free() {
         return Err(Error::input(Fault::new(
             KeyPath::of("vehicle.speed_hold"),
             "nothing",
-            "a body whose speed is held, with stiffness and damping",
+            "a body whose speed is held, with stiffness and damping, or a guided body",
         )));
     }
     Ok(())

@@ -157,7 +157,7 @@ struct Place {
 }
 
 impl Place {
-    #[inline]
+    #[inline(always)]
     fn nodes(&self) -> [usize; 4] {
         [self.node, self.node + 1, self.node + SHIFTS, self.node + SHIFTS + 1]
     }
@@ -183,7 +183,7 @@ impl GeometryTable {
         &self.rail
     }
 
-    #[inline]
+    #[inline(always)]
     fn place(&self, dy: f64, roll: f64) -> Result<Place, OutOfTable> {
         let x = (dy + SHIFT_RANGE) * (1.0 / SHIFT_STEP);
         let r = (roll + ROLL_RANGE) * (1.0 / ROLL_STEP);
@@ -199,7 +199,7 @@ impl GeometryTable {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn gaps_at(&self, place: &Place) -> Gaps {
         let mut out = Gaps { gap: [0.0; 2], yaw: [0.0; 2] };
         for (n, w) in place.nodes().into_iter().zip(place.weights) {
@@ -212,7 +212,7 @@ impl GeometryTable {
         out
     }
 
-    #[inline]
+    #[inline(always)]
     fn values_at(&self, place: &Place, zone: usize) -> Values {
         let mut out = [0.0; 12];
         for (n, w) in place.nodes().into_iter().zip(place.weights) {
@@ -235,7 +235,7 @@ impl GeometryTable {
     ///
     /// # Errors
     /// Shift or roll outside the table, or not a number.
-    #[inline]
+    #[inline(always)]
     pub fn contacts(
         &self,
         dy: f64,
@@ -280,7 +280,7 @@ impl GeometryTable {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn point(zone: Zone, penetration: f64, v: &Values) -> ContactPoint {
     ContactPoint {
         zone,
