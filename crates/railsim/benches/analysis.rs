@@ -16,7 +16,9 @@ fn bench(c: &mut Criterion) {
     let case = common::case(&value);
     let mut stand = Stand::new(&case).unwrap();
     for speed in [0.0, 35.0] {
-        c.bench_function(&format!("balance, locomotive at {speed} m/s"), |b| b.iter(|| stand.settle(speed).unwrap()));
+        c.bench_function(&format!("balance, locomotive at {speed} m/s"), |b| {
+            b.iter(|| stand.settle(speed).unwrap())
+        });
         let x = stand.settle(speed).unwrap();
         c.bench_function(&format!("modes with shapes, locomotive at {speed} m/s"), |b| {
             b.iter(|| modes(&stand.model, &mut stand.system(speed), &x, &[]).unwrap());
