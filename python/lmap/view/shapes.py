@@ -17,8 +17,8 @@ THINNEST = 0.1
 
 AXLE_RADIUS = 0.09
 """m; drawn."""
-JOURNAL = 0.35
-"""m from tape circle to the end of the axle: journals of 1.0 to 1.1 m from the centre at 1435 mm."""
+JOURNAL = 0.22
+"""m from tape circle to the end of the axle as drawn; axle boxes sit beyond it, where they can be seen."""
 WHEEL_INSIDE, WHEEL_OUTSIDE = 0.07, 0.065
 """m from the tape circle to the wheel's back and front: 135 mm wide, 1360 mm between backs."""
 FLANGE_HEIGHT, FLANGE_WIDTH = 0.028, 0.032

@@ -188,7 +188,7 @@
   var span = [0, 1, 2].map(function (i) { return most[i] - least[i]; });
   var unit = Math.max.apply(null, span) / 2; // m in one of plotly's units
   var size = span.map(function (v) { return v / unit; });
-  var SEEN = 2.4; // height seen, in plotly's units: in parallel projection it does not depend on where the camera is
+  var SEEN = 2.0; // height seen, in plotly's units: in parallel projection it does not depend on where the camera is
 
   // Parallel projection throughout: plotly builds its scene anew where the projection changes. How near things are is
   // then the size of the scene's box.
@@ -207,7 +207,7 @@
     right = right.map(function (v) { return v / m; });
     var above = [eye[1] * right[2] - eye[2] * right[1], eye[2] * right[0] - eye[0] * right[2], eye[0] * right[1] - eye[1] * right[0]];
     function seen(along) { return along.reduce(function (sum, v, i) { return sum + Math.abs(v) * size[i]; }, 0); }
-    var scale = 0.9 * SEEN / Math.max(seen(above), seen(right) / across), far = 2;
+    var scale = 0.86 * SEEN / Math.max(seen(above), seen(right) / across), far = 2;
     return {
       aspectratio: { x: scale * size[0], y: scale * size[1], z: scale * size[2] },
       camera: {
@@ -226,7 +226,9 @@
     };
   }
   function layout(view) {
+    var box = place.getBoundingClientRect();
     return {
+      width: place.clientWidth || box.width, height: place.clientHeight || box.height,
       margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", showlegend: false, hovermode: "closest",
       font: { color: colour("ink"), family: "system-ui, -apple-system, Segoe UI, Roboto, Arial, sans-serif" },
       hoverlabel: { bgcolor: colour("paper"), bordercolor: colour("soft"), align: "left", font: { color: colour("ink"), size: 12 } },
@@ -236,7 +238,7 @@
       }
     };
   }
-  var config = { displayModeBar: false, responsive: true, scrollZoom: true };
+  var config = { displayModeBar: false, scrollZoom: true };
 
   function look(view) {
     current = view;
@@ -258,6 +260,14 @@
     next.scene.camera = now.camera;
     next.scene.aspectratio = now.aspectratio;
     Plotly.react(place, traces(), next, config);
+  });
+
+  var resized = 0;
+  window.addEventListener("resize", function () {
+    window.clearTimeout(resized);
+    resized = window.setTimeout(function () {
+      Plotly.relayout(place, { width: place.clientWidth, height: place.clientHeight }).then(function () { return look(current); });
+    }, 150);
   });
 
   // ---------------------------------------------------------------- what is shown
