@@ -24,6 +24,18 @@ def view(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Override a named parameter of the vehicle."),
     ] = None,
+    speed_kmh: Annotated[
+        str | None,
+        typer.Option(
+            "--speed-kmh",
+            metavar="SPEEDS",
+            help="Play the mode shapes at these speeds, km/h: numbers and FROM:TO:STEP, with commas between; 0 stands. "
+            "Default: 0 and the design speed.",
+        ),
+    ] = None,
+    below_hz: Annotated[
+        float, typer.Option("--below-hz", metavar="HZ", help="Mode shapes up to this frequency.")
+    ] = 30.0,
     run: Annotated[
         list[Path] | None,
         typer.Option(
@@ -31,14 +43,16 @@ def view(
         ),
     ] = None,
 ) -> None:
-    """Draw a vehicle in 3D, as one page DIR/view-NAME.html that works offline, and measure what can be measured.
+    """Draw a vehicle in 3D with its mode shapes, as one page DIR/view-NAME.html that works offline.
 
-    Exit code: 0, 1 where something was found (asymmetry, an attachment point off its body, a wheel off its rail), 2 for
-    bad input.
+    What can be measured of the drawing is: left against right, attachment points, wheels on the rails.
+
+    Exit code: 0, 1 where something was found, 2 for bad input.
 
     Example: lmap view coco134 --condition tare --run out/cases/0f3a....parquet
     """
     from lmap.check import report_folder, write_page
+    from lmap.cli.modes import speeds_of
     from lmap.report.scene import file_name, render_scene
     from lmap.spec import overrides
     from lmap.vehicle import Vehicle
@@ -47,8 +61,10 @@ def view(
     folder = report_folder(out, key="--out")
     loaded = Vehicle.load(vehicle, overrides=overrides.parse(settings or []), condition=condition)
     model = resolved(loaded.data)
+    speeds = speeds_of(speed_kmh or f"0,{3.6 * loaded.data.design_speed:g}")
     gauge = _gauge(loaded)
     motions = [_played(path, model) for path in run or []]
+    motions += _modes(loaded, model, speeds, below_hz)
     found = findings(model, gauge)
     page = folder / file_name(model.name)
     write_page(page, render_scene(scene(model, gauge, found, motions)))
@@ -59,6 +75,19 @@ def view(
         from lmap.errors import EXIT_FAIL
 
         raise typer.Exit(EXIT_FAIL)
+
+
+def _modes(vehicle: Vehicle, model: Model, speeds: list[float], below_hz: float) -> list[dict[str, Any]]:
+    """Mode shapes; a vehicle that cannot stand is drawn all the same, to see why."""
+    from lmap.errors import LmapError
+    from lmap.view import mode_motions, modes_of
+
+    try:
+        frame = vehicle.modes([speed / 3.6 for speed in speeds])
+    except LmapError as error:
+        typer.echo(f"lmap: no mode shapes: {error}", err=True)
+        return []
+    return mode_motions(modes_of(frame, below_hz), model)
 
 
 def _gauge(vehicle: Vehicle) -> float | None:

@@ -7,7 +7,18 @@ from __future__ import annotations
 
 from lmap.view.checks import Finding, findings
 from lmap.view.model import Model, model_hash, resolved
-from lmap.view.motion import mode_motions, run_motion
+from lmap.view.motion import Mode, mode_motions, modes_of, run_motion
 from lmap.view.scene import scene
 
-__all__ = ["Finding", "Model", "findings", "mode_motions", "model_hash", "resolved", "run_motion", "scene"]
+__all__ = [
+    "Finding",
+    "Mode",
+    "Model",
+    "findings",
+    "mode_motions",
+    "model_hash",
+    "modes_of",
+    "resolved",
+    "run_motion",
+    "scene",
+]

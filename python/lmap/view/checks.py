@@ -14,8 +14,8 @@ from lmap.view.shapes import outside, shapes
 
 ASYMMETRY = 0.001
 """m; an element to the mirror image of its partner on the other side."""
-OUTSIDE = 0.5
-"""m; an attachment point to its body, which is drawn as a box: brackets reach beyond it."""
+OUTSIDE = 0.75
+"""m; an attachment point to its body, which is drawn as a box: brackets of low traction rods reach 0.6 m below it."""
 OFF_RAIL = 0.001
 """m; a tape circle to the rail head under it."""
 

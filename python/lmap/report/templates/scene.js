@@ -341,7 +341,7 @@
   }
   function frame(now) {
     if (!playing) { before = null; return; }
-    if (before !== null && !busy) {
+    if (before !== null && !busy && now - before > 30) {
       clock += Math.min((now - before) / 1000, 0.2) * slid(pace);
       var one = motion();
       if (one && one.kind === "run") {
