@@ -52,13 +52,17 @@ def test_view_writes_one_page_with_modes_and_a_run(tmp_path: Path) -> None:
     assert isinstance(motions, list)
     assert [one["kind"] for one in motions].count("run") == 1
     assert len([one for one in motions if one["kind"] == "mode"]) > 5
-    assert "http://" not in re.sub(r"<script>.*?</script>", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert "http://" not in re.sub(
+        r"<script>.*?</script>", "", page.read_text(encoding="utf-8"), flags=re.DOTALL
+    )
 
 
 def test_view_says_what_it_finds_and_leaves_with_one(tmp_path: Path) -> None:
     done = run(tmp_path, "view", "coco134", "--set", "wheelset.tape_half_distance=0.85")
     assert done.returncode == 1
-    assert "off_rail: the left tape circle of ws1 is 60.5 mm off its rail head; allowed: 0.001 m" in done.stdout
+    assert (
+        "off_rail: the left tape circle of ws1 is 60.5 mm off its rail head; allowed: 0.001 m" in done.stdout
+    )
     assert (tmp_path / "view-coco134.html").is_file()
 
 
@@ -73,7 +77,9 @@ def test_view_says_what_it_finds_and_leaves_with_one(tmp_path: Path) -> None:
         (("coco134", "--speed-kmh", "fast"), '--speed-kmh: found "fast"'),
     ],
 )
-def test_bad_input_is_one_message_and_no_page(tmp_path: Path, arguments: tuple[str, ...], message: str) -> None:
+def test_bad_input_is_one_message_and_no_page(
+    tmp_path: Path, arguments: tuple[str, ...], message: str
+) -> None:
     (tmp_path / "text.parquet").write_text("not columns", encoding="utf-8")
     done = run(tmp_path, "view", *arguments)
     assert (done.returncode, done.stdout) == (2, "")
@@ -95,7 +101,11 @@ def test_the_check_waits_for_a_person_and_passes_with_the_lines_that_it_printed(
     assert 'href="view-1.2.html"' in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
     # a copy, signed by nobody: only a person signs the spec that ships
-    lines = message[message.index("[sign_off]") :].replace("YOUR NAME", "Nobody").replace("YYYY-MM-DD", "2026-01-31")
+    lines = (
+        message[message.index("[sign_off]") :]
+        .replace("YOUR NAME", "Nobody")
+        .replace("YYYY-MM-DD", "2026-01-31")
+    )
     signed = tmp_path / "signed.toml"
     text = (ROOT / "specs" / "view.toml").read_text(encoding="utf-8")
     signed.write_text(f"{text}\n{lines}\n", encoding="utf-8")

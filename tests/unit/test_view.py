@@ -17,7 +17,17 @@ from lmap.spec.case import VehicleData
 from lmap.spec.load import load
 from lmap.spec.model import SignOff
 from lmap.verdict import Outcome
-from lmap.view import Mode, findings, mode_motions, model_hash, modes_of, resolved, run_motion, scene, sign_off
+from lmap.view import (
+    Mode,
+    findings,
+    mode_motions,
+    model_hash,
+    modes_of,
+    resolved,
+    run_motion,
+    scene,
+    sign_off,
+)
 from lmap.view.checks import LIMITS, measures
 from lmap.view.model import Body
 from lmap.view.shapes import Box, Cylinder, Line, box_of_inertia, outside, shapes
@@ -169,7 +179,9 @@ def test_distances_from_shapes_are_those_of_geometry() -> None:
     assert outside([box, line], (1.5, 0.0, 0.0))[0] == 0.0
 
 
-@pytest.mark.parametrize("shape", [Box((1.0, 2.0, 3.0), (2.0, 4.0, 6.0)), Cylinder((1.0, 2.0, 3.0), 0, 0.5, 2.0)])
+@pytest.mark.parametrize(
+    "shape", [Box((1.0, 2.0, 3.0), (2.0, 4.0, 6.0)), Cylinder((1.0, 2.0, 3.0), 0, 0.5, 2.0)]
+)
 def test_solids_are_closed(shape: Box | Cylinder) -> None:
     solid = shape.solid()
     sides: dict[tuple[int, int], int] = {}
@@ -229,7 +241,9 @@ def test_a_wheelset_beside_the_rails_is_found_by_wheel() -> None:
 def test_the_shipped_spec_judges_by_the_limits_of_the_command() -> None:
     spec = load(ROOT / "specs" / "view.toml").spec
     factor = {"mm": 1e-3, "m": 1.0}
-    written = {one.signal[0].rpartition(".")[2]: (one.max or 0.0) * factor[one.unit] for one in spec.criterion}
+    written = {
+        one.signal[0].rpartition(".")[2]: (one.max or 0.0) * factor[one.unit] for one in spec.criterion
+    }
     assert written == pytest.approx(LIMITS)
 
 
@@ -283,7 +297,9 @@ def test_a_sign_off_of_another_model_is_void() -> None:
     signed = SignOff(name="A. Person", date="2026-01-31", model="0" * 64)
     outcome, message = judged(signed)
     assert outcome is Outcome.MANUAL
-    assert message.startswith("the sign-off of A. Person (2026-01-31) is void: it is for model 000000000000...")
+    assert message.startswith(
+        "the sign-off of A. Person (2026-01-31) is void: it is for model 000000000000..."
+    )
 
 
 def test_a_sign_off_of_this_model_passes_and_says_whose_it_is() -> None:
@@ -318,7 +334,9 @@ def test_a_sign_off_of_this_model_passes_and_says_whose_it_is() -> None:
     ],
 )
 @pytest.mark.needs_core
-def test_a_faulty_sign_off_is_one_message_with_key_and_line(tmp_path: Path, written: str, message: str) -> None:
+def test_a_faulty_sign_off_is_one_message_with_key_and_line(
+    tmp_path: Path, written: str, message: str
+) -> None:
     path = tmp_path / "view.toml"
     text = (ROOT / "specs" / "view.toml").read_text(encoding="utf-8")
     path.write_text(f"{text}\n[sign_off]\n{written.replace('{hash}', 'a' * 64)}\n", encoding="utf-8")
@@ -362,7 +380,10 @@ def test_a_mode_is_drawn_so_that_its_farthest_point_moves_as_far_as_said() -> No
     assert [one["grows"] for one in motions] == [False, True]
     assert motions[0]["bodies"]["carbody"][2] == [0.3, 0.0]
     length, _, height = shapes(model)["carbody"][0].size  # type: ignore[union-attr]
-    assert motions[1]["bodies"]["carbody"][4] == [0.0, pytest.approx(0.3 / math.hypot(length / 2, height / 2), abs=1e-5)]
+    assert motions[1]["bodies"]["carbody"][4] == [
+        0.0,
+        pytest.approx(0.3 / math.hypot(length / 2, height / 2), abs=1e-5),
+    ]
 
 
 def test_modes_are_read_from_a_frame_and_those_that_do_not_oscillate_left_out() -> None:

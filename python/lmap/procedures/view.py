@@ -51,7 +51,9 @@ def look(spec: Spec, vehicle: VehicleData, settings: Mapping[str, Any]) -> Look:
     measured = {one.name: one.value for one in checks.measures(model, gauge)}
     for kind in checks.UNITS:
         if not any(name.endswith(f".{kind}") for name in measured):
-            measured[f"none.{kind}"] = 0.0  # nothing there to be wrong, e.g. a wheelset alone without connections
+            measured[f"none.{kind}"] = (
+                0.0  # nothing there to be wrong, e.g. a wheelset alone without connections
+            )
     person = sign_off.verdict(
         model, spec.sign_off, index=len(spec.criterion), vehicle=spec.vehicle, settings=settings
     )

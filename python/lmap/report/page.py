@@ -18,7 +18,7 @@ from typing import Any
 
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
-from lmap.report.embed import put, plotly_js, script_json, write_bytes
+from lmap.report.embed import plotly_js, put, script_json, write_bytes
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import write_parquet

@@ -36,7 +36,9 @@ def scene(
     drawn = {name: [shape.solid() for shape in pieces] for name, pieces in solids.items()}
     groups = {connection.name: _group(connection, model) for connection in model.connections}
     ends = _extent(model, drawn)
-    heaviest = max((body for body in model.bodies if body.radius is None), key=lambda body: body.mass, default=None)
+    heaviest = max(
+        (body for body in model.bodies if body.radius is None), key=lambda body: body.mass, default=None
+    )
     return {
         "name": model.name,
         "title": model.title,
@@ -98,12 +100,19 @@ def values_text(connection: Connection) -> str:
 
 def _connection_lines(connection: Connection) -> list[str]:
     a, b = connection.points
-    lines = [f"{connection.kind}: {connection.between[0]} to {connection.between[1]}", *_value_lines(connection)]
+    lines = [
+        f"{connection.kind}: {connection.between[0]} to {connection.between[1]}",
+        *_value_lines(connection),
+    ]
     if connection.carries_weight:
         lines.append("carries weight")
     if connection.mirrored:
         lines.append("mirrored: values as on the right side")
-    return [*lines, _at(a)] if a == b else [*lines, f"from {_at(a)}", f"to {_at(b)}, length {math.dist(a, b):.3f} m"]
+    return (
+        [*lines, _at(a)]
+        if a == b
+        else [*lines, f"from {_at(a)}", f"to {_at(b)}, length {math.dist(a, b):.3f} m"]
+    )
 
 
 def _value_lines(connection: Connection) -> list[str]:
@@ -226,5 +235,3 @@ def _piece(solid: Solid) -> dict[str, Any]:
 def _round(point: Sequence[float]) -> list[float]:
     """To 0.1 mm, for the page alone."""
     return [round(value, 4) + 0.0 for value in point]
-
-

@@ -60,7 +60,8 @@ def _message(model: Model, sign_off: SignOff | None, vehicle: str, settings: Map
     return (
         f"{why}. Open the drawing in the report folder (--report DIR), or the one that this makes:\n"
         f"    lmap view {vehicle}{''.join(options)}\n"
-        f"Look {LOOK_AT}. If all of it is right, these lines at the end of the spec say so (in place of an older sign-off):\n"
+        f"Look {LOOK_AT}. If all of it is right, these lines at the end of the spec say so, in place of an older "
+        "sign-off:\n"
         "    [sign_off]\n"
         '    name = "YOUR NAME"\n'
         '    date = "YYYY-MM-DD"\n'
