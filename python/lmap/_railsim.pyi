@@ -28,6 +28,7 @@ __all__ = [
     "toml_to_json",
     "track_extremes",
     "vehicle_resolve",
+    "vehicle_schema",
     "version",
 ]
 
@@ -131,6 +132,9 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
     overrides in it), `name`, `title`, `design_speed` (m/s), `wheel_radius` (m), `wheel_profile`, `track`,
     `conditions`, `design_condition`, `mass` (kg) and `bodies`. `InputError` with every fault.
     """
+
+def vehicle_schema() -> str:
+    """JSON schema of a vehicle file as JSON text."""
 
 def read_profile(text: str, name: str) -> str:
     """The text of a profile file as JSON: `{"points": [[y, z], ...]}`, mm.

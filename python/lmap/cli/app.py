@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from lmap.cli import channels, check, list_, run
+from lmap.cli import channels, check, list_, new, run, schema
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
@@ -48,7 +48,9 @@ def _main(
 app.command("channels")(channels.channels)
 app.command("check")(check.check)
 app.command("list")(list_.list_)
+app.command("new")(new.new)
 app.command("run")(run.run)
+app.command("schema")(schema.schema)
 
 
 def main() -> NoReturn:
