@@ -94,8 +94,10 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "kind = \"bushing\"",
         "kind = \"bushin\"",
-        "52: vehicle.template.axle.connection[0].kind: found \"bushin\"; allowed: \"anti_roll_bar\", \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \
-         \"friction_plate\", \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" (did you mean bushing?)",
+        "52: vehicle.template.axle.connection[0].kind: found \"bushin\"; allowed: \"anti_roll_bar\", \
+         \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \"friction_plate\", \
+         \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" \
+         (did you mean bushing?)",
     ),
     (
         "between = [\"{axle}\", \"frame\"]",
@@ -237,12 +239,14 @@ fn all_faults_are_said_at_once_and_each_once() {
     assert_eq!(
         said(&text, Some("empty")),
         [
-            "52: vehicle.template.axle.connection[0].kind: found \"spring\"; allowed: \"anti_roll_bar\", \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \
-         \"friction_plate\", \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" (did you mean point_spring?)",
+            "52: vehicle.template.axle.connection[0].kind: found \"spring\"; allowed: \"anti_roll_bar\", \
+             \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \"friction_plate\", \
+             \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" \
+             (did you mean point_spring?)",
             "67: vehicle.contact.poisson: found true; allowed: a number >= 0 and < 0.5",
             "3: vehicle.titel: found an unknown key; allowed: body, condition, connection, contact, design_condition, \
-             design_speed_kmh, dynamic_brake, equipment, include, load_case, name, outline, parameters, sensor, shape, speed_hold, template, title, track, \
-             traction, use, wheel_profile, wheelset (did you mean title?)",
+             design_speed_kmh, dynamic_brake, equipment, include, load_case, name, outline, parameters, sensor, \
+             shape, speed_hold, template, title, track, traction, use, wheel_profile, wheelset (did you mean title?)",
             "44: vehicle.template.axle.wheelset[0].mass: found 0 (from $axle.mass); allowed: a number > 0 kg",
             "?: vehicle.title: found nothing; allowed: a text",
         ]

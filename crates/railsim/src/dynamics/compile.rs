@@ -119,8 +119,7 @@ fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
 
 fn contact(case: &Case) -> Result<Contact> {
     let settings = &case.vehicle.contact;
-    let mass: f64 = case.vehicle.bodies.iter().map(|b| b.mass).sum::<f64>()
-        + case.vehicle.wheelsets.iter().map(|w| w.mass).sum::<f64>();
+    let mass = case.vehicle.mass();
     let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
     Ok(Contact::Profiles {
         table: Box::new(geometry_table(case)?),

@@ -251,10 +251,10 @@ impl Model {
         self.bodies.len() + self.wheelsets.len()
     }
 
-    /// Mass of everything, kg.
+    /// Mass of everything but guided bodies, kg: what the wheels carry.
     #[must_use]
     pub fn mass(&self) -> f64 {
-        (0..self.count()).map(|i| self.rigid(i).mass).sum()
+        (0..self.count()).filter(|i| !self.guided.contains(i)).map(|i| self.rigid(i).mass).sum()
     }
 
     /// The body whose place is called the vehicle's: the one that the speed is held on, else the first.

@@ -317,10 +317,15 @@ pub struct DynamicBrake {
 }
 
 impl Vehicle {
-    /// Mass of all bodies, kg.
+    /// Mass of all bodies but guided ones, kg.
     #[must_use]
     pub fn mass(&self) -> f64 {
-        self.bodies.iter().map(|b| b.mass).chain(self.wheelsets.iter().map(|w| w.mass)).sum()
+        self.bodies
+            .iter()
+            .filter(|b| !b.guided)
+            .map(|b| b.mass)
+            .chain(self.wheelsets.iter().map(|w| w.mass))
+            .sum()
     }
 
     /// The vehicle of a document (JSON as [`super::toml_to_json`] gives it) in one condition; without one, in its design
