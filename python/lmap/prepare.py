@@ -310,4 +310,14 @@ def vehicle_channels(name: str) -> list[Channel]:
         path = _first(profile, places)
         points = contact.read_profile(files.read_text(path, "profile"), profile)
         data[profile] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
-    return channels(case.with_profiles(data))
+    try:
+        return channels(case.with_profiles(data))
+    except InputProblem as error:
+        raise InputProblem(
+            [
+                located(problem, problem.key[1:], vehicle.document, {})
+                if problem.key[:1] == ("vehicle",)
+                else problem
+                for problem in error.problems
+            ]
+        ) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -97,9 +98,15 @@ def _table(part: Schema, definitions: Schema) -> list[str]:
         if key in required:
             value += ", needed"
         elif default not in (None, [], {}):
-            value += f"; `{str(default).lower() if isinstance(default, bool) else default}` if left out"
+            value += f"; {_default(default)} if left out"
         lines.append(f"| `{key}` | {value} | {_meaning(own)} |")
     return lines
+
+
+def _default(value: Any) -> str:
+    if isinstance(value, list) and not any(json.dumps(value).strip("[], 0.")):
+        return "zeros"
+    return f"`{json.dumps(value)}`"
 
 
 def _meaning(part: Schema) -> str:
