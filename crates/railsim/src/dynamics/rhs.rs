@@ -14,6 +14,7 @@ use crate::dynamics::state::StateMap;
 use crate::dynamics::stiff;
 use crate::integrator::{StiffBlock, System};
 use crate::math::Vec3;
+use crate::math::cube_root::cube_root;
 use crate::track::Deviation;
 
 /// Below this rolling speed (m/s) creepages are formed with it instead, so that standstill stays finite.
@@ -387,9 +388,9 @@ impl Axle<'_> {
 }
 
 /// The patch of a contact of the geometry table under load.
-#[inline]
+#[inline(always)]
 pub(crate) fn patch(point: &ContactPoint, normal: f64, shear_modulus: f64) -> Patch {
-    let root = normal.cbrt();
+    let root = cube_root(normal);
     Patch {
         a: point.a1 * root,
         b: point.b1 * root,
@@ -402,7 +403,7 @@ pub(crate) fn patch(point: &ContactPoint, normal: f64, shear_modulus: f64) -> Pa
 }
 
 /// Force of one contact on the wheel, track axes, N.
-#[inline]
+#[inline(always)]
 pub(crate) fn total_force(c: &ContactForce) -> Vec3 {
     c.normal * c.placed.e_n + c.creep[1] * c.placed.e_t + Vec3::new(c.creep[0], 0.0, 0.0)
 }
