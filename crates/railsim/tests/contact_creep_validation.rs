@@ -116,13 +116,25 @@ fn every_law_against_contact() {
     let (p, _) = patch();
     let fine = 200;
     let laws: [(&str, CreepLaw, [f64; 2]); 7] = [
-        ("FaStrip, 200 x 200", CreepLaw::Fastrip(Fastrip { nx: fine, ny: fine, poisson: Some(0.28) }), [0.02, 0.12]),
-        ("FaStrip, 20 x 20", CreepLaw::Fastrip(Fastrip { poisson: Some(0.28), ..Fastrip::default() }), [0.02, 0.12]),
+        (
+            "FaStrip, 200 x 200",
+            CreepLaw::Fastrip(Fastrip { nx: fine, ny: fine, poisson: Some(0.28) }),
+            [0.02, 0.12],
+        ),
+        (
+            "FaStrip, 20 x 20",
+            CreepLaw::Fastrip(Fastrip { poisson: Some(0.28), ..Fastrip::default() }),
+            [0.02, 0.12],
+        ),
         ("FASTSIM, 200 x 200", CreepLaw::Fastsim(Fastsim { nx: fine, ny: fine }), [0.04, 0.16]),
         ("FASTSIM, 10 x 10", CreepLaw::default(), [0.05, 0.21]),
         ("Polach, k_a = k_s = 1", CreepLaw::Polach(Polach::default()), [0.1, 0.4]),
         ("Shen-Hedrick-Elkins", CreepLaw::ShenHedrickElkins(ShenHedrickElkins {}), [0.2, 1.0]),
-        ("Vermeulen-Johnson", CreepLaw::VermeulenJohnson(VermeulenJohnson { poisson: Some(0.28) }), [0.4, 1.1]),
+        (
+            "Vermeulen-Johnson",
+            CreepLaw::VermeulenJohnson(VermeulenJohnson { poisson: Some(0.28) }),
+            [0.4, 1.1],
+        ),
     ];
     println!("| law | xi | eta | spin | combined | all |");
     let mut means = Vec::new();
@@ -149,7 +161,10 @@ fn fastrip_against_contacts_own() {
     let law = CreepLaw::Fastrip(Fastrip { nx: 200, ny: 200, poisson: Some(0.28) });
     for (kind, bound) in [("xi", 0.02), ("eta", 0.02), ("phi", 0.1), ("comb", 0.1)] {
         let e = errors(&rows, "FASTRIP", kind, |c| force(&law, &p, c));
-        println!("FaStrip 200 x 200 against CONTACT's, {kind}: {} rows, mean {:.4}, max {:.4}", e.rows, e.mean, e.largest);
+        println!(
+            "FaStrip 200 x 200 against CONTACT's, {kind}: {} rows, mean {:.4}, max {:.4}",
+            e.rows, e.mean, e.largest
+        );
         assert!(e.largest < bound, "{kind}: {}", e.largest);
     }
 }
@@ -162,7 +177,11 @@ fn spin_moment_against_contact() {
     let unit = MU * p.n * (p.a * p.b).sqrt();
     let laws = [
         ("FASTSIM 50 x 50", CreepLaw::Fastsim(Fastsim { nx: 50, ny: 50 }), [0.12, 0.12, 0.12, 0.12]),
-        ("FaStrip 50 x 50", CreepLaw::Fastrip(Fastrip { nx: 50, ny: 50, poisson: Some(0.28) }), [0.05, 0.06, 0.06, 0.12]),
+        (
+            "FaStrip 50 x 50",
+            CreepLaw::Fastrip(Fastrip { nx: 50, ny: 50, poisson: Some(0.28) }),
+            [0.05, 0.06, 0.06, 0.12],
+        ),
     ];
     for (name, law, bounds) in laws {
         for (kind, bound) in ["xi", "eta", "phi", "comb"].into_iter().zip(bounds) {
@@ -172,7 +191,10 @@ fn spin_moment_against_contact() {
                 .map(|r| (law.spin_moment(&p, c33, &r.c, MU).unwrap() / unit - r.f[2]).abs())
                 .collect();
             let largest = all.iter().copied().fold(0.0, f64::max);
-            println!("Mz of {name} against CONTACT, {kind}: mean {:.4}, max {largest:.4}", all.iter().sum::<f64>() / all.len() as f64);
+            println!(
+                "Mz of {name} against CONTACT, {kind}: mean {:.4}, max {largest:.4}",
+                all.iter().sum::<f64>() / all.len() as f64
+            );
             assert!(largest < bound, "{name} {kind}: {largest}");
         }
     }
@@ -181,7 +203,11 @@ fn spin_moment_against_contact() {
     for kind in ["eta", "phi"] {
         let row = rows.iter().find(|r| r.method == "CONTACT" && r.kind == kind).unwrap();
         let ours = linear.spin_moment(&p, c33, &row.c, MU).unwrap() / unit;
-        println!("Mz of the linear theory, {kind}: {ours:.4}, CONTACT {:.4}, difference {:+.4}", row.f[2], ours - row.f[2]);
+        println!(
+            "Mz of the linear theory, {kind}: {ours:.4}, CONTACT {:.4}, difference {:+.4}",
+            row.f[2],
+            ours - row.f[2]
+        );
         assert!(ours * row.f[2] > 0.0 && (ours / row.f[2] - 1.0).abs() < 0.25);
     }
 }
@@ -196,8 +222,10 @@ fn small_creepage_slopes_on_a_fine_grid() {
     ] {
         let scale = p.shear_modulus * p.a * p.b;
         let small = 1e-9;
-        let long = law.force(&p, &Creepage { xi: small, ..Creepage::default() }, MU).fx / (-scale * p.c11 * small);
-        let lateral = law.force(&p, &Creepage { eta: small, ..Creepage::default() }, MU).fy / (-scale * p.c22 * small);
+        let long =
+            law.force(&p, &Creepage { xi: small, ..Creepage::default() }, MU).fx / (-scale * p.c11 * small);
+        let lateral =
+            law.force(&p, &Creepage { eta: small, ..Creepage::default() }, MU).fy / (-scale * p.c22 * small);
         println!("{law:?}: slopes over Kalker's {long:.5} and {lateral:.5}");
         assert!((long - 1.0).abs() < 0.005 && (lateral - 1.0).abs() < 0.005);
     }
@@ -242,7 +270,11 @@ fn traction() -> Vec<Traction> {
         .filter(|l| !l.starts_with('#') && !l.starts_with("series"))
         .map(|line| {
             let f: Vec<&str> = line.split(',').collect();
-            Traction { series: f[0].parse().unwrap(), xi: f[2].parse().unwrap(), adhesion: f[7].parse().unwrap() }
+            Traction {
+                series: f[0].parse().unwrap(),
+                xi: f[2].parse().unwrap(),
+                adhesion: f[7].parse().unwrap(),
+            }
         })
         .collect()
 }
@@ -268,7 +300,9 @@ fn against_series(name: &str, series: u8, mu: f64, bound: f64, ours: impl Fn(f64
         }
     }
     let (error, xi, f, theirs) = worst;
-    println!("{name} against series {series}: largest {error:.4} mu N at xi {xi:.4}: ours {f:.4}, theirs {theirs:.4}");
+    println!(
+        "{name} against series {series}: largest {error:.4} mu N at xi {xi:.4}: ours {f:.4}, theirs {theirs:.4}"
+    );
     assert!(error < bound, "{name}: {error}");
 }
 
@@ -289,8 +323,11 @@ fn locomotive_traction_curve_modified_fastsim() {
     let falling = Falling { ratio: 0.38, decay: std::f64::consts::LN_2 / 0.99 };
     let mu = |xi: f64| 0.36 * falling.factor(10.0 * xi);
     for n in [10, 42, 200] {
-        let law = CreepLaw::ModifiedFastsim(ModifiedFastsim { k0: 0.54, alpha: 0.02, beta: 0.62, nx: n, ny: n });
-        against_series(&format!("modified FASTSIM {n} x {n}"), 4, 0.36, 0.05, |xi| adhesion(&law, xi, mu(xi)));
+        let law =
+            CreepLaw::ModifiedFastsim(ModifiedFastsim { k0: 0.54, alpha: 0.02, beta: 0.62, nx: n, ny: n });
+        against_series(&format!("modified FASTSIM {n} x {n}"), 4, 0.36, 0.05, |xi| {
+            adhesion(&law, xi, mu(xi))
+        });
     }
 }
 
@@ -317,7 +354,10 @@ fn locomotive_traction_curve_polach_fitted() {
                 }
             }
         }
-        println!("Polach fitted to series {series}: k_a {:.2}, k_s {:.2}, largest difference {:.4} mu N", best.1, best.2, best.0);
+        println!(
+            "Polach fitted to series {series}: k_a {:.2}, k_s {:.2}, largest difference {:.4} mu N",
+            best.1, best.2, best.0
+        );
         assert!(best.0 < stated);
     }
 }
