@@ -30,7 +30,9 @@ def read(name: str) -> pl.DataFrame:
     return pl.read_csv(DATA / name, comment_prefix="#")
 
 
-def forces(law: dict[str, Any], contacts: dict[str, Any], falling: dict[str, float] | None = None) -> pl.DataFrame:
+def forces(
+    law: dict[str, Any], contacts: dict[str, Any], falling: dict[str, float] | None = None
+) -> pl.DataFrame:
     text = None if falling is None else json.dumps(falling)
     return pl.DataFrame(toml.core().creep_forces(json.dumps(law), contacts, text))
 
@@ -60,12 +62,24 @@ def test_kalkers_table(compare: Compare, table: pl.DataFrame, name: str, poisson
     ratio = table["a_over_b"].to_numpy()
     exact = np.where(ratio > 1.0, 1.0 / (np.round(10.0 / ratio) / 10.0), ratio)
     ours = coefficients(exact.tolist(), poisson)[name].to_numpy()
-    compare(f"{name} nu {poisson:g} at 19 nodes, worst", np.abs(ours / published - 1.0).max(), 0.0, 1e-12, "Kalker 1990")
+    compare(
+        f"{name} nu {poisson:g} at 19 nodes, worst",
+        np.abs(ours / published - 1.0).max(),
+        0.0,
+        1e-12,
+        "Kalker 1990",
+    )
     between = np.exp(np.linspace(math.log(0.1), math.log(10.0), 400))
     between = between[(between > 0.1) & (between < 10.0)]
     smooth = np.exp(PchipInterpolator(np.log(exact), np.log(published))(np.log(between)))
     ours = coefficients(between.tolist(), poisson)[name].to_numpy()
-    compare(f"{name} nu {poisson:g} between, worst", np.abs(ours / smooth - 1.0).max(), 0.0, 0.01, "PCHIP of Kalker 1990")
+    compare(
+        f"{name} nu {poisson:g} between, worst",
+        np.abs(ours / smooth - 1.0).max(),
+        0.0,
+        0.01,
+        "PCHIP of Kalker 1990",
+    )
 
 
 def curves(method: str) -> pl.DataFrame:
@@ -73,7 +87,11 @@ def curves(method: str) -> pl.DataFrame:
 
 
 def errors(law: dict[str, Any], rows: pl.DataFrame) -> np.ndarray:
-    creepages = {"xi": rows["xi"].to_numpy(), "eta": rows["eta"].to_numpy(), "phi": 1e3 * rows["phi_per_mm"].to_numpy()}
+    creepages = {
+        "xi": rows["xi"].to_numpy(),
+        "eta": rows["eta"].to_numpy(),
+        "phi": 1e3 * rows["phi_per_mm"].to_numpy(),
+    }
     ours = forces(law, {**patch(6e-3, 6e-3, LOAD), **creepages, "mu": MU}) / (MU * LOAD)
     return np.hypot(ours["fx"] - rows["Fx_rel"], ours["fy"] - rows["Fy_rel"])
 
@@ -85,7 +103,9 @@ FINE = {"nx": 200, "ny": 200}
 def test_fastsim_is_contacts_fastsim(compare: Compare, kind: str) -> None:
     rows = curves("FASTSIM_PAR").filter(pl.col("kind") == kind)
     worst = errors({"kind": "fastsim", **FINE}, rows).max()
-    compare(f"FASTSIM pure {kind}, worst of {rows.height} (mu N)", worst, 0.0, 0.005, f"{CONTACT} FASTSIM n = 200")
+    compare(
+        f"FASTSIM pure {kind}, worst of {rows.height} (mu N)", worst, 0.0, 0.005, f"{CONTACT} FASTSIM n = 200"
+    )
 
 
 def test_laws_against_the_exact_theory(compare: Compare) -> None:
@@ -97,7 +117,9 @@ def test_laws_against_the_exact_theory(compare: Compare) -> None:
         ({"kind": "polach"}, 0.09, 0.4),
     ]:
         found = errors(law, curves("CONTACT"))
-        compare(f"{law['kind']}: mean error of {len(found)} (mu N)", found.mean(), 0.0, mean, f"{CONTACT} exact")
+        compare(
+            f"{law['kind']}: mean error of {len(found)} (mu N)", found.mean(), 0.0, mean, f"{CONTACT} exact"
+        )
         compare(f"{law['kind']}: largest error (mu N)", found.max(), 0.0, largest, f"{CONTACT} exact")
         means.append(found.mean())
     assert means == sorted(means)
@@ -128,7 +150,13 @@ def test_locomotive_traction_curve(compare: Compare, law: dict[str, Any], series
     rows = read("tractcurv.csv").filter(pl.col("series") == series)
     falls = series in (2, 4)
     mu = 0.36 if falls else 0.33
-    contact = {**patch(6.307e-3, 12.615e-3, 106.7e3), "xi": rows["xi"].to_numpy(), "eta": 0.0, "phi": 0.0, "mu": mu}
+    contact = {
+        **patch(6.307e-3, 12.615e-3, 106.7e3),
+        "xi": rows["xi"].to_numpy(),
+        "eta": 0.0,
+        "phi": 0.0,
+        "mu": mu,
+    }
     falling = {"ratio": 0.38, "decay": math.log(2.0) / 0.99} if falls else None
     ours = -forces(law, {**contact, "speed": 10.0}, falling)["fx"].to_numpy() / 106.7e3
     worst = np.abs(ours - rows["adhesion_coefficient"].to_numpy()).max() / mu
@@ -148,12 +176,27 @@ def test_polachs_formula(
     """Dry and wet of Spiryagin et al. (2013), Table 4, at 22 km/h: friction at the slip velocity and formula."""
     rows = read("polach_table4_22kmh.csv")
     contact = {
-        **{"a": 7.7463e-3, "b": 5.4550e-3, "n": 109.5e3, "c11": 4.30, "c22": 4.0, "c23": 1.9},
-        **{"shear_modulus": 80.77e9, "xi": rows.to_series(0).to_numpy(), "eta": 0.0, "phi": 0.0, "mu": mu},
+        "a": 7.7463e-3,
+        "b": 5.4550e-3,
+        "n": 109.5e3,
+        "c11": 4.30,
+        "c22": 4.0,
+        "c23": 1.9,
+        "shear_modulus": 80.77e9,
+        "xi": rows.to_series(0).to_numpy(),
+        "eta": 0.0,
+        "phi": 0.0,
+        "mu": mu,
     }
     ours = -forces(law, {**contact, "speed": 22.0 / 3.6}, falling)["fx"].to_numpy() / 109.5e3
     worst = np.abs(ours - rows.to_series(column).to_numpy()).max()
-    compare(f"Polach {'dry' if column == 1 else 'wet'}, worst of {rows.height} (load)", worst, 0.0, 1e-3, "Table 4")
+    compare(
+        f"Polach {'dry' if column == 1 else 'wet'}, worst of {rows.height} (load)",
+        worst,
+        0.0,
+        1e-3,
+        "Table 4",
+    )
 
 
 @pytest.mark.parametrize(

@@ -90,7 +90,7 @@ def _names(value: Any) -> list[str]:
 
 
 def _friction(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
-    """A number, or a table (per rail, along the track, falling with the slip velocity), which is the core's to check."""
+    """A number; or a table (per rail, along the track, with the slip velocity), which is the core's to check."""
     return value if isinstance(value, dict) else number(value)
 
 
