@@ -5,6 +5,7 @@
 
 mod arrow;
 mod contact;
+mod creep;
 mod enter;
 mod errors;
 mod probe;
@@ -19,6 +20,8 @@ mod module {
     use crate::arrow::Frame;
     #[pymodule_export]
     use crate::contact::{equivalent_conicity, read_profile};
+    #[pymodule_export]
+    use crate::creep::{creep_forces, kalker_coefficients};
     #[pymodule_export]
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,

@@ -3,6 +3,7 @@
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{Law, Mount};
 use crate::contact::creep::CreepLaw;
+use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
@@ -76,7 +77,7 @@ pub enum Contact {
         /// Hunt-Crossley dissipation factor, s/m.
         dissipation: f64,
         /// Coefficient of friction.
-        friction: f64,
+        friction: FrictionField,
     },
     /// Constant coefficients, for closed forms.
     Textbook(Textbook),

@@ -329,12 +329,13 @@ impl Axle<'_> {
                     contact.normal = point.share * n.force;
                     contact.normal_slope = [point.share * n.stiffness, point.share * n.damping];
                     contact.creep = [0.0; 2];
-                    contact.creeps = self.creeping && contact.normal > 0.0 && *friction > 0.0;
+                    let mu = friction.at(usize::from(sigma > 0.0), q[0], placed.slip);
+                    contact.creeps = self.creeping && contact.normal > 0.0 && mu > 0.0;
                     if contact.creeps {
                         cases.push(CreepCase {
                             patch: patch(point, contact.normal, *shear_modulus),
                             creepage: placed.creepage,
-                            mu: *friction,
+                            mu,
                         });
                     }
                     contact.placed = placed;
