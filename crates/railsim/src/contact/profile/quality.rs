@@ -286,6 +286,11 @@ fn turns(report: &mut Report<'_>) {
             report.add(Code::Reversal, Severity::Warning, Some(i), text);
             continue;
         }
+        // one point out of line: turns there and back, which is a spike
+        let net: f64 = [k.wrapping_sub(1), k, k + 1].into_iter().filter_map(|j| turn.get(j)).sum();
+        if net.abs() < 0.3 * by.abs() {
+            continue;
+        }
         let beside = [k.wrapping_sub(2), k.wrapping_sub(1), k + 1, k + 2]
             .into_iter()
             .filter_map(|j| turn.get(j))
@@ -383,5 +388,114 @@ fn scatter(report: &mut Report<'_>) {
             let text = format!("point {i} is {:.1} um off the smoothed curve", 1e6 * by);
             report.add(Code::Spike, Severity::Warning, Some(i), text);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A head of R80 with sides, every 0.1 mm of angle's arc.
+    fn head() -> Vec<[f64; 2]> {
+        (-400..=400)
+            .map(|i| 1.1e-3 * f64::from(i))
+            .map(|a: f64| [0.08 * a.sin(), 0.08 * (1.0 - a.cos())])
+            .collect()
+    }
+
+    fn codes(points: &[[f64; 2]], kind: ProfileKind) -> Vec<(Code, Severity, Option<usize>)> {
+        quality(points, Some(kind)).iter().map(|f| (f.code, f.severity, f.index)).collect()
+    }
+
+    fn rail_with(change: impl Fn(&mut Vec<[f64; 2]>)) -> Vec<(Code, Severity, Option<usize>)> {
+        let mut points = head();
+        change(&mut points);
+        codes(&points, ProfileKind::Rail)
+    }
+
+    /// 7 mm of side is too little for a gauge: the finding that the plain head has.
+    fn only_gauge(found: &[(Code, Severity, Option<usize>)]) -> bool {
+        found.iter().all(|f| f.0 == Code::GaugePoint)
+    }
+
+    #[test]
+    fn a_clean_head_lacks_but_its_sides() {
+        let found = codes(&head(), ProfileKind::Rail);
+        assert_eq!(found.len(), 2);
+        assert!(only_gauge(&found), "{found:?}");
+    }
+
+    #[test]
+    fn every_flaw_is_found_at_its_place() {
+        let first = |found: Vec<(Code, Severity, Option<usize>)>, code: Code| {
+            found.iter().find(|f| f.0 == code).copied().unwrap_or_else(|| panic!("{code:?} not in {found:?}"))
+        };
+        let doubled = rail_with(|p| p.insert(200, p[200]));
+        assert_eq!(first(doubled, Code::DoubledPoint), (Code::DoubledPoint, Severity::Warning, Some(201)));
+        let gap = rail_with(|p| drop(p.drain(200..215)));
+        assert_eq!(first(gap, Code::Gap), (Code::Gap, Severity::Warning, Some(199)));
+        let wide = rail_with(|p| drop(p.drain(200..450)));
+        assert_eq!(first(wide, Code::Gap), (Code::Gap, Severity::Error, Some(199)));
+        let kink = rail_with(|p| {
+            p.iter_mut().skip(501).for_each(|q| q[1] += 0.3 * (q[0] - 0.08 * (0.11_f64).sin()))
+        });
+        assert_eq!(first(kink, Code::Kink), (Code::Kink, Severity::Warning, Some(500)));
+        let back = rail_with(|p| {
+            let again: Vec<_> = p[480..500].iter().rev().map(|q| [q[0], q[1] + 1e-5]).collect();
+            p.splice(500..500, again);
+        });
+        assert_eq!(first(back, Code::Reversal).1, Severity::Warning);
+        let spike = rail_with(|p| p[350][1] -= 5e-5);
+        assert_eq!(first(spike, Code::Spike), (Code::Spike, Severity::Warning, Some(350)));
+        let crossed = rail_with(|p| p.swap(300, 320));
+        assert_eq!(first(crossed, Code::SelfCrossing).1, Severity::Error);
+        let up = rail_with(|p| p.iter_mut().for_each(|q| q[1] = -q[1]));
+        assert_eq!(first(up, Code::Orientation).1, Severity::Error);
+        let worn = rail_with(|p| p.iter_mut().filter(|q| q[0] < 0.0).for_each(|q| q[1] *= 1.2));
+        assert_eq!(first(worn, Code::Asymmetry).1, Severity::Note);
+        let few = rail_with(|p| p.truncate(5));
+        assert_eq!(first(few, Code::TooFewPoints).1, Severity::Error);
+        let sparse = rail_with(|p| *p = p.iter().step_by(40).copied().collect());
+        assert_eq!(first(sparse, Code::TooFewPoints).1, Severity::Warning);
+        let nan = rail_with(|p| p[3][0] = f64::NAN);
+        assert_eq!(nan, vec![(Code::NotFinite, Severity::Error, Some(3))]);
+        let metres = rail_with(|p| p.iter_mut().for_each(|q| *q = q.map(|x| 1e-3 * x)));
+        assert_eq!(metres, vec![(Code::Width, Severity::Error, None)]);
+        assert_eq!(first(codes(&head(), ProfileKind::Wheel), Code::WrongKind).1, Severity::Error);
+        let beside: Vec<_> = (1..120).map(|i| 1e-3 * f64::from(i)).map(|y| [y, -0.05 * y]).collect();
+        assert_eq!(first(codes(&beside, ProfileKind::Wheel), Code::RunningCircle).1, Severity::Error);
+        // a shelf within a wheel's tread: steeper than 86 degrees, not at an end
+        let shelf: Vec<_> = (-40..60)
+            .map(|i| 1e-3 * f64::from(i))
+            .map(|y| [y, if y < 0.0 { 0.01 } else { -0.02 * y }])
+            .flat_map(|p| if p[0] == 0.0 { vec![[0.0, 0.01], p] } else { vec![p] })
+            .collect();
+        assert_eq!(first(codes(&shelf, ProfileKind::Wheel), Code::Overhang).1, Severity::Warning);
+    }
+
+    #[test]
+    fn noise_is_measured() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut normal = || (-2.0 * (1.0 - random()).ln()).sqrt() * (std::f64::consts::TAU * random()).cos();
+        let noisy: Vec<_> = head().iter().map(|p| [p[0], p[1] + 5e-6 * normal()]).collect();
+        let found = quality(&noisy, Some(ProfileKind::Rail));
+        let noise = found.iter().find(|f| f.code == Code::Noise).unwrap();
+        // sigma as put in, less what the fit of a cubic to some 20 points takes up
+        let stated: f64 = noise.text.split_whitespace().nth(3).unwrap().parse().unwrap();
+        assert!((4.0..5.5).contains(&stated), "{}", noise.text);
+        assert!(!found.iter().any(|f| f.code == Code::Spike), "{found:?}");
+    }
+
+    #[test]
+    fn many_findings_of_one_kind_are_cut_short() {
+        let doubled: Vec<_> = head().iter().flat_map(|p| [*p, *p]).collect();
+        let found = quality(&doubled, Some(ProfileKind::Rail));
+        let all: Vec<_> = found.iter().filter(|f| f.code == Code::DoubledPoint).collect();
+        assert_eq!(all.len(), 21);
+        assert!(all[20].text.contains("more than these"));
     }
 }

@@ -88,6 +88,10 @@ fn section(from: Section, keyword: &str) -> Option<Section> {
 
 fn parse(text: &str, name: &str) -> Result<Raw> {
     let mut faults = Faults::of(name);
+    if sniff(text).is_none() {
+        faults.whole("neither header.begin nor spline.begin", "a SIMPACK profile, which has these sections");
+        return faults.or(Raw::millimetres(Vec::new()));
+    }
     let mut processing = Processing::default();
     let mut notes = Vec::new();
     let mut kind = None;
