@@ -135,7 +135,7 @@ pub(super) fn wrong_unit(points: &[[f64; 2]], at: &KeyPath) -> Option<Fault> {
     let found = if fits(1e3) {
         format!("{:.4} mm wide: 1000 times too narrow, as metres are that should be millimetres", 1e3 * wide)
     } else if fits(1e-3) {
-        format!("{:.4} m wide: 1000 times too wide, as millimetres are that should be metres", wide)
+        format!("{wide:.4} m wide: 1000 times too wide, as millimetres are that should be metres")
     } else {
         format!("{:.4} mm wide", 1e3 * wide)
     };

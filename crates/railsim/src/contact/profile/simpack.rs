@@ -208,7 +208,7 @@ impl Processing {
             "bound.y.max" => self.bounds[0][1] = value,
             "bound.z.min" => self.bounds[1][0] = value,
             "bound.z.max" => self.bounds[1][1] = value,
-            "units.len.f" | "units.ang.f" if !(value >= 1e-6 && value <= 1e9) => {
+            "units.len.f" | "units.ang.f" if !(1e-6..=1e9).contains(&value) => {
                 faults.line(number, line, "a number of units per metre or radian, 1e-6 to 1e9");
             }
             "units.len.f" => self.length = value,
