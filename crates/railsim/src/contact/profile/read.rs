@@ -165,6 +165,9 @@ pub(super) struct Rule {
     pub because: &'static str,
 }
 
+/// Text of points in the program's form.
+type Writer = fn(&[[f64; 2]], &WriteOptions) -> String;
+
 /// One format.
 pub(super) struct Codec {
     pub format: Format,
@@ -173,7 +176,7 @@ pub(super) struct Codec {
     pub sniff: fn(&str) -> Option<&'static str>,
     pub rule: Rule,
     pub parse: fn(text: &str, name: &str) -> Result<Raw>,
-    pub write: Option<fn(&[[f64; 2]], &WriteOptions) -> String>,
+    pub write: Option<Writer>,
 }
 
 /// All formats, in the order in which their contents are tried.
