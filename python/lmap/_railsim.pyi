@@ -7,7 +7,7 @@ was written. SI units; profiles alone are in millimetres, as their files are.
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict, final
 
-from typing_extensions import CapsuleType
+from typing_extensions import Buffer, CapsuleType
 
 __all__ = [
     "ConvergenceError",
@@ -20,16 +20,22 @@ __all__ = [
     "_run_probes",
     "channels",
     "check_case",
+    "creep_forces",
     "equivalent_conicity",
     "fingerprint",
+    "inspect_profile",
+    "kalker_coefficients",
+    "profile_quality",
     "read_profile",
     "run_cases",
+    "smooth_profile",
     "toml_line",
     "toml_to_json",
     "track_extremes",
     "vehicle_resolve",
     "vehicle_schema",
     "version",
+    "write_profile",
 ]
 
 class _Fault(TypedDict):
@@ -41,7 +47,7 @@ class _Fault(TypedDict):
     line: int | None  # from 1; known only where TOML was read
 
 class _Ended(TypedDict):
-    kind: Literal["end_of_track", "diverged"]
+    kind: Literal["end_of_track", "diverged", "computed"]  # the last: a table that is no run's
     t: float | None  # s; of the last row, or of the divergence
     s: float | None  # m
     message: str | None
@@ -136,10 +142,43 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
 def vehicle_schema() -> str:
     """JSON schema of a vehicle file as JSON text."""
 
-def read_profile(text: str, name: str) -> str:
+def read_profile(text: str, name: str, options_json: str = "{}") -> str:
     """The text of a profile file as JSON: `{"points": [[y, z], ...]}`, mm.
 
-    `name` is what messages call it. `InputError` where it is none.
+    y points outward, z down, and the points run from the flange or gauge side outward, whichever way the file has them.
+
+    `name` is the file's name or what messages call it: its extension, and before that the content, says which format
+    this is: plain CSV, MiniProf (.whl, .ban, .mpt, .rail), SIMPACK and CONTACT (.prw, .prr), GENSYS (.wheel, .rail),
+    VAMPIRE (.whe, .rai). `options_json` overrules what is detected: an object with any of `kind` (wheel, rail),
+    `format` (csv, miniprof, simpack, gensys, vampire), `unit` (mm, cm, m, in), `mirror_y`, `mirror_z`. `InputError`
+    where it is none, where it is plainly the other kind, and where its width is none of a profile.
+    """
+
+def inspect_profile(text: str, name: str, options_json: str = "{}") -> str:
+    """`read_profile` with all that was found out: `kind` (wheel, rail or null), `detected`, `findings`, `smoothing`.
+
+    `detected` has `format`, `kind`, `unit` (m), `mirrored_y`, `mirrored_z`, each with `value` and `because`, then
+    `reversed` and `notes`. `findings` are as of `profile_quality`.
+    """
+
+def write_profile(points_json: str, name: str, options_json: str = "{}") -> str:
+    """Points (JSON, `[[y, z], ...]`, mm; y outward, z down) as the text of a file called `name`.
+
+    The extension says the format, unless `options_json` does: an object with any of `format`, `kind` (only SIMPACK
+    files say it) and `title`. Reading it gives the same points. VAMPIRE files are not written.
+    """
+
+def profile_quality(points_json: str, kind: Literal["wheel", "rail"] | None = None) -> str:
+    """What is remarkable about points, as JSON: a list, the most serious first, empty for a clean profile.
+
+    Each has `code` (e.g. kink, gap, doubled_point, overhang, self_crossing, noise), `severity` (note, warning,
+    error), `index` of the point and `place` [y, z] in mm, both null where it is about the whole, and `text`.
+    """
+
+def smooth_profile(points_json: str, kind: Literal["wheel", "rail"], half_width: float = 1.0) -> str:
+    """The curve that contact sees, as JSON: lists `y`, `z` (mm), `angle` (atan2(dz, dy), rad), `curvature` (1/m).
+
+    Smoothed over +-`half_width` mm (0.3 to 10). `InputError` for points that contact cannot be computed with.
     """
 
 def check_case(case_json: str) -> None:
@@ -157,6 +196,25 @@ def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
     `None` where there is no oscillation of this amplitude: the rolling radius difference does not restore, or the
     wheel would leave the profiles.
     """
+
+def creep_forces(
+    law_json: str,
+    contacts: dict[str, float | Sequence[float] | Buffer],
+    falling_json: str | None = None,
+) -> Frame:
+    """Creep forces on the wheel: a row of `fx`, `fy` (N) for each contact, and `mz` (N m) where `c33` is given.
+
+    `law_json` is a law as `run.creep` has it. `contacts` has `a`, `b` (m, along rolling and across), `n` (N), `c11`,
+    `c22`, `c23`, `shear_modulus` (Pa), `xi`, `eta`, `phi` (1/m), `mu`, and may have `c33` and `speed` (m/s): a number
+    for all contacts, or an array of float64 or a list with one for each. `falling_json`, `{"ratio": A, "decay": B}`,
+    makes `mu` fall with the slip velocity `speed` times creepage. `mz` is NaN for a law that gives no moment.
+
+    Axes of the contact: x rolling, y lateral, right-handed with the normal; positive creepage gives negative force.
+    `InputError` names the array and the index.
+    """
+
+def kalker_coefficients(a_over_b: Sequence[float], poisson: float) -> Frame:
+    """Kalker's `c11`, `c22`, `c23`, `c33` for axis ratios (a along rolling) at one Poisson's ratio."""
 
 def run_cases(
     cases: Sequence[str],

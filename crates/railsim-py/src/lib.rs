@@ -5,9 +5,11 @@
 
 mod arrow;
 mod contact;
+mod creep;
 mod enter;
 mod errors;
 mod probe;
+mod profile;
 mod run;
 mod toml;
 mod vehicle;
@@ -18,13 +20,17 @@ mod module {
     #[pymodule_export]
     use crate::arrow::Frame;
     #[pymodule_export]
-    use crate::contact::{equivalent_conicity, read_profile};
+    use crate::contact::equivalent_conicity;
+    #[pymodule_export]
+    use crate::creep::{creep_forces, kalker_coefficients};
     #[pymodule_export]
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
     #[pymodule_export]
     use crate::probe::_run_probes;
+    #[pymodule_export]
+    use crate::profile::{inspect_profile, profile_quality, read_profile, smooth_profile, write_profile};
     #[pymodule_export]
     use crate::run::{channels, check_case, fingerprint, run_cases, track_extremes, version};
     #[pymodule_export]

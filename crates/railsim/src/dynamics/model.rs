@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Law, Mount, Relative, Wrench};
 use crate::contact::creep::CreepLaw;
+use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
@@ -149,7 +150,7 @@ pub enum Contact {
         /// Hunt-Crossley dissipation factor, s/m.
         dissipation: f64,
         /// Coefficient of friction.
-        friction: f64,
+        friction: FrictionField,
     },
     /// Constant coefficients, for closed forms.
     Textbook(Textbook),

@@ -47,7 +47,8 @@ impl GeometryTable {
     /// - profiles of the wrong kind,
     /// - a rail that does not reach down to the gauge point on its gauge side,
     /// - gauge, radius, distances or elastic constants that are not positive, Poisson's ratio outside 0..0.5, an
-    ///   inclination steeper than 1:5.
+    ///   inclination steeper than 1:5,
+    /// - a gauge too narrow for the flanges, or so wide that the wheelset falls in.
     pub fn build(wheel: &Profile, rail: &Profile, placement: &Placement) -> Result<Self> {
         check(wheel, rail, placement)?;
         let at = KeyPath::of("track.rail_profile");
@@ -297,5 +298,8 @@ fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
     range("vehicle.wheelset.radius", p.wheel_radius, 0.05, 2.0, "m");
     range("vehicle.contact.youngs_modulus", p.youngs_modulus, 1e8, 1e13, "Pa");
     range("vehicle.contact.poisson", p.poisson, 0.0, 0.5, "");
+    if faults.is_empty() {
+        super::gauge::faults(wheel, p, &mut faults);
+    }
     if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }

@@ -27,6 +27,7 @@
 //! and the gap closes by r tan(gamma)^2 yaw^2/2. Yaw does not move the lateral position of the contact.
 
 mod build;
+mod gauge;
 
 use crate::contact::profile::Profile;
 
