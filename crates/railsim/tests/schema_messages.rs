@@ -42,7 +42,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "carries_weight = true",
         "carries_wieght = true",
         "56: vehicle.template.axle.connection[0].carries_wieght: found an unknown key; allowed: \
-         between, carries_weight, damping, kind, mirror, name, position, positions, \
+         axes, between, carries_weight, damping, kind, mirror, name, position, positions, preload, \
          rotational_damping, rotational_stiffness, stiffness (did you mean carries_weight?)",
     ),
     (
@@ -209,7 +209,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "[contact]",
         "[[template.spare.body]]\nname = \"{spare}\"\nmas = 1.0\ninertia = [1.0, 1.0, 1.0]\n\
          position = [0.0, 0.0, 0.0]\n\n[contact]",
-        "67: vehicle.template.spare.body[0].mas: found an unknown key; allowed: inertia, mass, name, \
+        "67: vehicle.template.spare.body[0].mas: found an unknown key; allowed: guided, inertia, mass, name, \
          position (did you mean mass?)\n\
          65: vehicle.template.spare.body[0].mass: found nothing; allowed: a number > 0 kg",
     ),
