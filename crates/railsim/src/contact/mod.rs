@@ -15,4 +15,5 @@ pub mod hertz;
 pub mod kalker_table;
 pub mod normal;
 pub mod profile;
+pub mod search;
 pub mod textbook;
