@@ -104,6 +104,8 @@ pub struct Patch {
     /// Centre of the patch: positions and angle averaged over the stretch with the interpenetration left of
     /// [`VIRTUAL`] times the approach as weight, as the force of its strips is distributed.
     pub centre: Touch,
+    /// The same averages over all of the interpenetration: where CONTACT puts its contact reference point.
+    pub marker: Touch,
     /// From the deepest point along the contact plane to where the virtual interpenetration ends, m: inward (negative), outward.
     pub reach: [f64; 2],
     /// Relative lateral curvature that the load was computed with, 1/m.
@@ -519,7 +521,8 @@ impl Side {
             });
         };
         let approach = -deepest.gap;
-        let mean = self.averaged(&points[from..to], &deepest, approach);
+        let mean = self.averaged(&points[from..to], &deepest, VIRTUAL * approach);
+        let marker = self.averaged(&points[from..to], &deepest, approach).centre;
         let k_yy = mean.curvature + deepest.k_xy * deepest.k_xy / deepest.k_xx;
         let (modulus, poisson) = (
             hertz::effective_modulus(self.placement.youngs_modulus, self.placement.poisson),
@@ -535,6 +538,7 @@ impl Side {
         Ok(Patch {
             deepest,
             centre: mean.centre,
+            marker,
             reach: mean.reach,
             curvature: mean.curvature,
             spread: ((outward + inward) / (outward - inward))
@@ -548,8 +552,8 @@ impl Side {
     }
 
     /// Means over a stretch with the virtual interpenetration as weight, and the curvature of the parabola that has the same area of it.
-    fn averaged(&self, points: &[Outline], deepest: &Touch, approach: f64) -> Mean {
-        let lost = (1.0 - VIRTUAL) * approach;
+    fn averaged(&self, points: &[Outline], deepest: &Touch, depth: f64) -> Mean {
+        let lost = -deepest.gap - depth;
         let (sin, cos) = deepest.angle.sin_cos();
         let along = |p: &Outline| (p.y - deepest.rail[0]) * cos - (p.z - deepest.rail[1]) * sin;
         let stations = self.wheel.stations();
@@ -589,11 +593,10 @@ impl Side {
         if area <= 0.0 {
             // narrower than a station
             let curvature = (deepest.k_yy - deepest.k_xy * deepest.k_xy / deepest.k_xx).max(1e-3);
-            let b = (2.0 * VIRTUAL * approach / curvature).sqrt();
+            let b = (2.0 * depth / curvature).sqrt();
             return Mean { centre: *deepest, reach: [-b, b], curvature };
         }
         let [y_rail, z_rail, y_wheel, z_wheel, ahead, angle] = sum.map(|s| s / area);
-        let depth = VIRTUAL * approach;
         let curvature = 2.0 * depth * (4.0 / 3.0 * depth / area).powi(2);
         let centre = Touch {
             part: part(angle, y_wheel < self.tip()),
