@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 use railsim::contact::conicity::{Method, RadiusCurve};
-use railsim::contact::pair::Pair;
+use railsim::contact::pair::{Pair, Roll};
 use railsim::contact::profile::read_csv;
 use serde_json::json;
 
@@ -29,7 +29,9 @@ fn explore() {
         let pair = json!({"left": side(l, dl), "right": side(r, dr), "gauge": 1.43516, "flange_back_distance": 1.360, "smoothing": smoothing});
         let pair = Pair::from_json(&pair.to_string()).unwrap();
         let t = std::time::Instant::now();
-        let curve = pair.radius_curve(0.010, 1e-4).unwrap();
+        let curve = pair
+            .radius_curve(0.010, 1e-4, if std::env::var("FREE").is_ok() { Roll::Free } else { Roll::Level })
+            .unwrap();
         let m = |m| curve.conicity(3e-3, m).unwrap_or(f64::NAN);
         println!(
             "{case}: {theirs} int {:.4} reg {:.4} har {:.4} centre {:?} turn {:?} range {:?} {:?} {:?}",

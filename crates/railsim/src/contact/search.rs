@@ -185,6 +185,9 @@ pub enum NoContact {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Side {
     wheel: Profile,
+    /// dz/dy of the wheel's stations
+    slopes: Vec<f64>,
+    tip: f64,
     rail: Profile,
     rail_origin_y: f64,
     placement: Placement,
@@ -210,7 +213,14 @@ impl Side {
     pub fn new(wheel: &Profile, rail: &Profile, placement: &Placement) -> Result<Self> {
         check(wheel, rail, placement)?;
         let (rail, rail_origin_y) = place_rail(rail, placement)?;
-        Ok(Self { wheel: wheel.clone(), rail, rail_origin_y, placement: *placement })
+        Ok(Self {
+            slopes: wheel.stations().iter().map(|s| s.direction.tan()).collect(),
+            tip: tip(wheel),
+            wheel: wheel.clone(),
+            rail,
+            rail_origin_y,
+            placement: *placement,
+        })
     }
 
     /// How the pair was placed.
@@ -249,14 +259,14 @@ impl Side {
         let (s0, c0) = rail.roll.sin_cos();
         let trace = Trace::new(sp, cp, sr, cr);
         let mut points = Vec::with_capacity(self.wheel.stations().len());
-        for (station, s) in self.wheel.stations().iter().enumerate() {
-            let Some((sin, cos)) = trace.angle(s.direction.tan()) else { continue };
+        for (station, (s, &slope)) in self.wheel.stations().iter().zip(&self.slopes).enumerate() {
+            let Some((sin, cos)) = trace.angle(slope) else { continue };
             let r = radius + s.z;
             let (x1, y1, z1) = (r * sin, half + s.y, r * cos);
             let across = y1 * cr - z1 * sr;
             let y = pose.y + sp * x1 + cp * across - self.rail_origin_y - rail.y;
             let z = pose.z - radius + y1 * sr + z1 * cr - rail.z;
-            let [ny, nz] = trace.normal(s.direction.tan(), sin, cos);
+            let [ny, nz] = trace.normal(slope, sin, cos);
             let (ny, nz) = (ny * c0 + nz * s0, nz * c0 - ny * s0);
             if nz <= 0.0 {
                 continue;
@@ -286,7 +296,7 @@ impl Side {
             mix(a.curvature, b.curvature),
             wheel[1],
         );
-        let back = wheel[0] < self.tip();
+        let back = wheel[0] < self.tip;
         let rail_direction = local.map_or(direction, |l| l.direction);
         let angle = -0.5 * (direction + rail_direction);
         Touch {
@@ -319,12 +329,6 @@ impl Side {
         (around * c2 + meridian * s2, (meridian - around) * turn * c2.sqrt(), around * s2 + meridian * c2)
     }
 
-    /// y of the flange tip: the lowest station at negative y.
-    fn tip(&self) -> f64 {
-        let lowest = self.wheel.stations().iter().filter(|s| s.y < 0.0).max_by(|a, b| a.z.total_cmp(&b.z));
-        lowest.map_or(f64::NEG_INFINITY, |s| if s.direction.abs() < 0.2 { s.y } else { f64::NEG_INFINITY })
-    }
-
     /// Places where the wheel is closest to the rail, by rising normal gap, at most [`MAX_CONTACTS`]. The depth of the pose
     /// does not matter but for the value of the gaps.
     ///
@@ -333,13 +337,10 @@ impl Side {
     pub fn closest(&self, pose: &Pose, rail: &RailShift) -> std::result::Result<Vec<Touch>, NoContact> {
         let points = self.outline(pose, rail)?;
         let mut found = self.minima(&points, pose);
-        self.refuse_ends(
-            &points,
-            found.iter().map(|f| f.0.gap / vertical(&f.0)).fold(f64::INFINITY, f64::min),
-        )?;
-        found.sort_by(|a, b| a.0.gap.total_cmp(&b.0.gap));
+        self.refuse_ends(&points, found.iter().map(|f| f.gap / vertical(f)).fold(f64::INFINITY, f64::min))?;
+        found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
         let mut out: Vec<Touch> = Vec::with_capacity(MAX_CONTACTS);
-        for (touch, _) in found {
+        for touch in found {
             let apart = |other: &Touch| {
                 (other.wheel[0] - touch.wheel[0]).hypot(other.wheel[1] - touch.wheel[1]) > SEPARATE
             };
@@ -362,24 +363,24 @@ impl Side {
             .ok_or(NoContact::BesideTheRail)
     }
 
-    fn minima(&self, points: &[Outline], pose: &Pose) -> Vec<(Touch, usize)> {
+    fn minima(&self, points: &[Outline], pose: &Pose) -> Vec<Touch> {
         // slope of the gap over y
-        let slope = |p: &Outline| {
-            self.rail.local(p.y).map(|l| l.direction.tan() - p.direction.clamp(-1.55, 1.55).tan())
-        };
+        let slope =
+            |p: &Outline| self.rail.slope(p.y).map(|slope| slope - p.direction.clamp(-1.55, 1.55).tan());
         let mut out = Vec::new();
-        for k in 0..points.len().saturating_sub(1) {
-            let (p, q) = (&points[k], &points[k + 1]);
-            if q.station != p.station + 1 || !(p.gap.is_finite() && q.gap.is_finite()) {
+        for k in 1..points.len().saturating_sub(1) {
+            let (before, here, after) = (&points[k - 1], &points[k], &points[k + 1]);
+            let together =
+                after.station == before.station + 2 && before.gap.is_finite() && after.gap.is_finite();
+            if !(together && before.gap >= here.gap && here.gap < after.gap) {
                 continue;
             }
-            if let (Some(before), Some(after)) = (slope(p), slope(q))
-                && before <= 0.0
-                && after > 0.0
-            {
-                let t = before / (before - after);
-                out.push((self.touch(points, pose, k, t), k));
-            }
+            let slopes = [before, here, after].map(|p| slope(p).unwrap_or(f64::NAN));
+            let i = if slopes[1] > 0.0 { k - 1 } else { k };
+            let (a, b) = if slopes[1] > 0.0 { (slopes[0], slopes[1]) } else { (slopes[1], slopes[2]) };
+            // the slope turns between the two; where it does not (rounding), the station itself
+            let t = if a <= 0.0 && b > 0.0 { a / (a - b) } else { (k - i) as f64 };
+            out.push(self.touch(points, pose, i, t));
         }
         out
     }
@@ -402,6 +403,12 @@ impl Side {
             NoContact::EndOfProfile { profile: "rail", y: lowest.y }
         })
     }
+}
+
+/// y of the flange tip: the lowest station at negative y.
+fn tip(wheel: &Profile) -> f64 {
+    let lowest = wheel.stations().iter().filter(|s| s.y < 0.0).max_by(|a, b| a.z.total_cmp(&b.z));
+    lowest.map_or(f64::NEG_INFINITY, |s| if s.direction.abs() < 0.2 { s.y } else { f64::NEG_INFINITY })
 }
 
 /// cos of the angle by which normal and vertical differ.
@@ -505,11 +512,7 @@ impl Side {
         // The deepest true minimum of the stretch (of up to a few in a conforming one).
         let from = first.saturating_sub(1);
         let to = (end + 1).min(points.len());
-        let deepest = self
-            .minima(&points[from..to], pose)
-            .into_iter()
-            .map(|(touch, _)| touch)
-            .min_by(|a, b| a.gap.total_cmp(&b.gap));
+        let deepest = self.minima(&points[from..to], pose).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         let Some(deepest) = deepest else {
             let p = points[first];
             let s = self.wheel.stations()[p.station];
@@ -599,7 +602,7 @@ impl Side {
         let [y_rail, z_rail, y_wheel, z_wheel, ahead, angle] = sum.map(|s| s / area);
         let curvature = 2.0 * depth * (4.0 / 3.0 * depth / area).powi(2);
         let centre = Touch {
-            part: part(angle, y_wheel < self.tip()),
+            part: part(angle, y_wheel < self.tip),
             rail: [y_rail, z_rail],
             wheel: [y_wheel, z_wheel],
             ahead,
