@@ -7,6 +7,7 @@ mod arrow;
 mod contact;
 mod enter;
 mod errors;
+mod geometry;
 mod probe;
 mod run;
 mod toml;
@@ -23,6 +24,8 @@ mod module {
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
+    #[pymodule_export]
+    use crate::geometry::{contact_map, curve_conicity, pair_conicity, rolling_radius_difference};
     #[pymodule_export]
     use crate::probe::_run_probes;
     #[pymodule_export]
