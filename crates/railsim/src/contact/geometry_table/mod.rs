@@ -41,6 +41,8 @@ pub const PENETRATION: f64 = 0.03e-3;
 /// Bound of the relative lateral curvature, 1/m (a radius of 2 m).
 pub const LEAST_CURVATURE: f64 = 0.5;
 
+/// Most contacts of one wheel that a table gives.
+pub const MAX_CONTACTS: usize = 2;
 /// Greatest shift either way, m.
 pub const SHIFT_RANGE: f64 = 0.020;
 /// Step of the shift, m.
