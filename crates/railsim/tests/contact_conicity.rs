@@ -99,13 +99,14 @@ fn conicity_of_the_given_curves() {
 
 /// From the profiles. Tolerance of the standard for calculations: the smaller of 0.05 and half the value.
 ///
-/// E3's 0.277 against 0.245: wheel H jumps from tread to flange root between 2.1 and 2.5 mm, and at 3 mm the conicity hangs on where exactly. With
+/// dr at every 0.1 mm, as the reference curves are given, straight between: where contact jumps near the amplitude asked for, the result hangs on that
+/// (E2 is 0.045 with 0.05 mm). E3's 0.277 against 0.245: wheel H jumps from tread to flange root between 2.1 and 2.5 mm, and at 3 mm the conicity hangs on where exactly. With
 /// different diameters (E7) the motion crosses the jump fast and agrees in the third figure.
 #[test]
 fn conicity_of_the_reference_pairs() {
     for (case, right, left, d_right, d_left, theirs) in CASES {
         let Some(pair) = pair(right, left, [d_right, d_left]) else { return };
-        let curve = pair.radius_curve(0.010, 5e-5, Roll::Level).unwrap();
+        let curve = pair.radius_curve(0.010, 1e-4, Roll::Level).unwrap();
         let of = |method| curve.conicity(3e-3, method).unwrap();
         let ours = of(Method::Integration);
         println!(
@@ -119,7 +120,7 @@ fn conicity_of_the_reference_pairs() {
     // the axle that rolls
     for (case, right, left, d_right, d_left, theirs) in &CASES[..4] {
         let Some(pair) = pair(right, left, [*d_right, *d_left]) else { return };
-        let curve = pair.radius_curve(0.006, 2e-4, Roll::Free).unwrap();
+        let curve = pair.radius_curve(0.006, 1e-4, Roll::Free).unwrap();
         println!("{case} free to roll: {:.4} ({theirs})", curve.conicity(3e-3, Method::Integration).unwrap());
     }
 }

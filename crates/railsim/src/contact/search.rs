@@ -10,7 +10,7 @@
 //! yaw and roll; the x of the point is where the contact leads or trails the axle.
 //!
 //! **Rigid contact.** The vertical gap of outline and rail (rail axes) has minima where the two tangents are parallel: these are the
-//! candidates, at most [`MAX_CONTACTS`] of them, by rising normal gap. The least of them touches.
+//! candidates, at most [`MAX_CONTACTS`] of them. The least of them touches.
 //!
 //! **Elastic contact.** The wheel lowered beyond touching interpenetrates the rail; each connected stretch is one patch, at most
 //! [`MAX_CONTACTS`]. Its approach is the greatest normal interpenetration, its curvatures those of the gap about the
@@ -328,8 +328,8 @@ impl Side {
         (around * c2 + meridian * s2, (meridian - around) * turn * c2.sqrt(), around * s2 + meridian * c2)
     }
 
-    /// Places where the wheel is closest to the rail, by rising normal gap, at most [`MAX_CONTACTS`]. The depth of the pose
-    /// does not matter but for the value of the gaps.
+    /// Places where the wheel is closest to the rail, at most [`MAX_CONTACTS`], in the order in which a wheel that is lowered touches
+    /// them (by rising vertical gap).
     ///
     /// # Errors
     /// [`NoContact`]: beside the rail, or the closest place is the end of a profile.
@@ -337,7 +337,7 @@ impl Side {
         let points = self.outline(pose, rail)?;
         let mut found = self.minima(&points, pose);
         self.refuse_ends(&points, found.iter().map(|f| f.gap / vertical(f)).fold(f64::INFINITY, f64::min))?;
-        found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
+        found.sort_by(|a, b| (a.gap / vertical(a)).total_cmp(&(b.gap / vertical(b))));
         let mut out: Vec<Touch> = Vec::with_capacity(MAX_CONTACTS);
         for touch in found {
             let apart = |other: &Touch| {

@@ -1,7 +1,5 @@
 //! The compiled model: immutable, shared between threads.
 
-use std::ops::Range;
-
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{Law, Mount};
 use crate::contact::creep::CreepLaw;
@@ -108,8 +106,6 @@ pub struct Model {
     /// m/s2.
     pub gravity: f64,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
-    /// Runs of links between the same two bodies.
-    pub(crate) joints: Vec<Range<usize>>,
 }
 
 impl Model {
@@ -131,13 +127,6 @@ impl Model {
         gravity: f64,
     ) -> Result<Self> {
         links.sort_by_key(|l| (l.a, l.b));
-        let mut joints: Vec<Range<usize>> = Vec::new();
-        for (i, link) in links.iter().enumerate() {
-            match joints.last_mut() {
-                Some(run) if (links[run.start].a, links[run.start].b) == (link.a, link.b) => run.end = i + 1,
-                _ => joints.push(i..i + 1),
-            }
-        }
         let map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len() };
         let stiff_blocks = (0..wheelsets.len())
             .map(|w| {
@@ -157,7 +146,6 @@ impl Model {
             contact,
             gravity,
             stiff_blocks,
-            joints,
         })
     }
 

@@ -57,6 +57,24 @@ pub struct CreepForce {
     pub fy: f64,
 }
 
+/// What a law is asked: one patch, its creepage and its coefficient of friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CreepCase {
+    /// The patch under load.
+    pub patch: Patch,
+    /// Its creepage.
+    pub creepage: Creepage,
+    /// Coefficient of friction.
+    pub mu: f64,
+}
+
+impl CreepCase {
+    /// Load and extent, without which there is no force.
+    fn carries(&self) -> bool {
+        self.patch.n > 0.0 && self.patch.a > 0.0 && self.patch.b > 0.0
+    }
+}
+
 /// A creep-force law, as written in a case: `creep = { kind = "fastsim", nx = 10, ny = 10 }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -81,13 +99,24 @@ impl CreepLaw {
     /// No load or no extent (n, a or b not positive) gives no force. Does not allocate.
     #[must_use]
     pub fn force(&self, patch: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
-        if !(patch.n > 0.0 && patch.a > 0.0 && patch.b > 0.0) {
-            return CreepForce::default();
-        }
+        let mut force = [CreepForce::default()];
+        self.forces(&[CreepCase { patch: *patch, creepage: *creepage, mu }], &mut force);
+        force[0]
+    }
+
+    /// Forces of several patches, the same to the bit as one by one: `forces[i]` for `cases[i]`. Does not allocate.
+    ///
+    /// # Panics
+    /// Where the two differ in length.
+    pub fn forces(&self, cases: &[CreepCase], forces: &mut [CreepForce]) {
+        assert_eq!(cases.len(), forces.len(), "one force per case");
         match self {
-            Self::Fastsim(law) => law.force(patch, creepage, mu),
-            Self::KalkerLinear(law) => law.force(patch, creepage),
-            Self::Polach(law) => law.force(patch, creepage, mu),
+            Self::Fastsim(law) => law.forces(cases, forces),
+            Self::KalkerLinear(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage)),
+            Self::Polach(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
+        }
+        for (force, _) in forces.iter_mut().zip(cases).filter(|(_, case)| !case.carries()) {
+            *force = CreepForce::default();
         }
     }
 
@@ -123,5 +152,12 @@ impl CreepLaw {
         let linear = KalkerLinear::examples().into_iter().map(Self::KalkerLinear);
         let polach = Polach::examples().into_iter().map(Self::Polach);
         fastsim.chain(linear).chain(polach).collect()
+    }
+}
+
+#[inline]
+fn each(cases: &[CreepCase], forces: &mut [CreepForce], law: impl Fn(&CreepCase) -> CreepForce) {
+    for (force, case) in forces.iter_mut().zip(cases) {
+        *force = law(case);
     }
 }
