@@ -8,6 +8,7 @@ mod contact;
 mod creep;
 mod enter;
 mod errors;
+mod geometry;
 mod probe;
 mod profile;
 mod run;
@@ -27,6 +28,8 @@ mod module {
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
+    #[pymodule_export]
+    use crate::geometry::{contact_map, curve_conicity, pair_conicity, rolling_radius_difference};
     #[pymodule_export]
     use crate::probe::_run_probes;
     #[pymodule_export]

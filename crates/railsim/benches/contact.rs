@@ -6,7 +6,7 @@ use railsim::contact::creep::{
     CreepCase, CreepForce, CreepLaw, Creepage, Fastrip, KalkerLinear, ModifiedFastsim, Patch, Polach,
     ShenHedrickElkins, VermeulenJohnson,
 };
-use railsim::contact::geometry_table::{ContactPoint, GeometryTable, Placement};
+use railsim::contact::geometry_table::{ContactPoint, GeometryTable, MAX_CONTACTS, Placement};
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use std::hint::black_box;
 
@@ -64,7 +64,7 @@ fn contact(criterion: &mut Criterion) {
     let Ok(table) = GeometryTable::build(&wheel, &rail, &placement) else { panic!("no table") };
     // near flange contact both gaps are small
     let gap = table.gap(7.4e-3, 1e-3).unwrap_or_default();
-    let mut out = [ContactPoint::default(); 2];
+    let mut out = [ContactPoint::default(); MAX_CONTACTS];
     for (name, dy, dz) in [
         ("lookup, no contact", 1e-3, -1e-3),
         ("lookup, one contact", 1e-3, table.gap(1e-3, 1e-3).map_or(0.0, |g| g[0] + 1e-4)),

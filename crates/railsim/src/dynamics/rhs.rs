@@ -5,7 +5,7 @@ use crate::connection::lanes::BushingBlock;
 use crate::connection::{Law, Pair, Pose, Relative};
 use crate::contact::creep::{CreepCase, Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
-use crate::contact::geometry_table::ContactPoint;
+use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::contact::normal::hunt_crossley;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::model::{Contact, Link, Model};
@@ -335,7 +335,7 @@ impl Axle<'_> {
                 let rail = rail_pose(sigma, rail_y, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
                 wheel.lift(pose.shift);
-                let mut found = [ContactPoint::default(); 2];
+                let mut found = [ContactPoint::default(); MAX_CONTACTS];
                 let count = table
                     .contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found)
                     .map_err(|_| pose)?;
