@@ -13,6 +13,7 @@ pub mod creepage;
 pub mod geometry_table;
 pub mod hertz;
 pub mod kalker_table;
+pub mod non_elliptic;
 pub mod normal;
 pub mod profile;
 pub mod textbook;
