@@ -22,13 +22,17 @@ __all__ = [
     "check_case",
     "equivalent_conicity",
     "fingerprint",
+    "inspect_profile",
+    "profile_quality",
     "read_profile",
     "run_cases",
+    "smooth_profile",
     "toml_line",
     "toml_to_json",
     "track_extremes",
     "vehicle_resolve",
     "version",
+    "write_profile",
 ]
 
 class _Fault(TypedDict):
@@ -132,10 +136,43 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
     `conditions`, `design_condition`, `mass` (kg) and `bodies`. `InputError` with every fault.
     """
 
-def read_profile(text: str, name: str) -> str:
+def read_profile(text: str, name: str, options_json: str = "{}") -> str:
     """The text of a profile file as JSON: `{"points": [[y, z], ...]}`, mm.
 
-    `name` is what messages call it. `InputError` where it is none.
+    y points outward, z down, and the points run from the flange or gauge side outward, whichever way the file has them.
+
+    `name` is the file's name or what messages call it: its extension, and before that the content, says which format
+    this is: plain CSV, MiniProf (.whl, .ban, .mpt, .rail), SIMPACK and CONTACT (.prw, .prr), GENSYS (.wheel, .rail),
+    VAMPIRE (.whe, .rai). `options_json` overrules what is detected: an object with any of `kind` (wheel, rail),
+    `format` (csv, miniprof, simpack, gensys, vampire), `unit` (mm, cm, m, in), `mirror_y`, `mirror_z`. `InputError`
+    where it is none, where it is plainly the other kind, and where its width is none of a profile.
+    """
+
+def inspect_profile(text: str, name: str, options_json: str = "{}") -> str:
+    """`read_profile` with all that was found out: also `kind` (wheel, rail or null), `detected`, `findings`, `smoothing`.
+
+    `detected` has `format`, `kind`, `unit` (m), `mirrored_y`, `mirrored_z`, each with `value` and `because`, then
+    `reversed` and `notes`. `findings` are as of `profile_quality`.
+    """
+
+def write_profile(points_json: str, name: str, options_json: str = "{}") -> str:
+    """Points (JSON, `[[y, z], ...]`, mm; y outward, z down) as the text of a file called `name`.
+
+    The extension says the format, unless `options_json` does: an object with any of `format`, `kind` (only SIMPACK
+    files say it) and `title`. Reading it gives the same points. VAMPIRE files are not written.
+    """
+
+def profile_quality(points_json: str, kind: Literal["wheel", "rail"] | None = None) -> str:
+    """What is remarkable about points, as JSON: a list, the most serious first, empty for a clean profile.
+
+    Each has `code` (e.g. kink, gap, doubled_point, overhang, self_crossing, noise), `severity` (note, warning,
+    error), `index` of the point and `place` [y, z] in mm, both null where it is about the whole, and `text`.
+    """
+
+def smooth_profile(points_json: str, kind: Literal["wheel", "rail"], half_width: float = 1.0) -> str:
+    """The curve that contact sees, as JSON: lists `y`, `z` (mm), `angle` (atan2(dz, dy), rad), `curvature` (1/m).
+
+    Smoothed over +-`half_width` mm (0.3 to 10). `InputError` for points that contact cannot be computed with.
     """
 
 def check_case(case_json: str) -> None:

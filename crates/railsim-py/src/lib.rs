@@ -9,6 +9,7 @@ mod enter;
 mod errors;
 mod patch;
 mod probe;
+mod profile;
 mod run;
 mod toml;
 mod vehicle;
@@ -19,7 +20,7 @@ mod module {
     #[pymodule_export]
     use crate::arrow::Frame;
     #[pymodule_export]
-    use crate::contact::{equivalent_conicity, read_profile};
+    use crate::contact::equivalent_conicity;
     #[pymodule_export]
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
@@ -28,6 +29,8 @@ mod module {
     use crate::patch::{hertz, non_elliptic};
     #[pymodule_export]
     use crate::probe::_run_probes;
+    #[pymodule_export]
+    use crate::profile::{inspect_profile, profile_quality, read_profile, smooth_profile, write_profile};
     #[pymodule_export]
     use crate::run::{channels, check_case, fingerprint, run_cases, track_extremes, version};
     #[pymodule_export]
