@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from lmap import files
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
@@ -37,11 +38,11 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
     cases = root / "cases"
     cases.mkdir(parents=True, exist_ok=True)
     for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
-        _write(cases / f"{case.hash}.json", case.case_json.encode())
-        _put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
-    _write(root / "index.html", render(acceptance))
-    _write(root / "junit.xml", junit(acceptance).encode())
-    _write(root / "verdicts.json", to_json(acceptance).encode())
+        files.write(cases / f"{case.hash}.json", case.case_json.encode())
+        files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+    files.write(root / "index.html", render(acceptance))
+    files.write(root / "junit.xml", junit(acceptance).encode())
+    files.write(root / "verdicts.json", to_json(acceptance).encode())
 
 
 def render(acceptance: Acceptance) -> bytes:
@@ -249,17 +250,3 @@ def _class(verdict: str) -> str:
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def _write(path: Path, content: bytes) -> None:
-    _put(path, lambda temporary: temporary.write_bytes(content))
-
-
-def _put(path: Path, write: Callable[[Path], object]) -> None:
-    """All of it or nothing, also when the disk is full or the program is stopped."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        write(temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
