@@ -15,5 +15,7 @@ pub mod hertz;
 pub mod kalker_table;
 pub mod non_elliptic;
 pub mod normal;
+pub mod pair;
 pub mod profile;
+pub mod search;
 pub mod textbook;

@@ -50,20 +50,7 @@ impl GeometryTable {
     ///   inclination steeper than 1:5.
     pub fn build(wheel: &Profile, rail: &Profile, placement: &Placement) -> Result<Self> {
         check(wheel, rail, placement)?;
-        let at = KeyPath::of("track.rail_profile");
-        let mut rail = rail.inclined(placement.rail_inclination, &at)?;
-        rail.top_to_zero();
-        let gauge_point = gauge_point(&rail, placement.gauge_point_depth).ok_or_else(|| {
-            Error::input(
-                Fault::new(
-                    KeyPath::of("track.gauge_point_depth"),
-                    format!("{:.1} mm", 1e3 * placement.gauge_point_depth),
-                    "a depth that the gauge side of the rail profile reaches",
-                )
-                .hint("the gauge side has negative y"),
-            )
-        })?;
-        let rail_origin_y = 0.5 * placement.gauge - gauge_point;
+        let (rail, rail_origin_y) = place_rail(rail, placement)?;
         let mut table = Self {
             placement: *placement,
             rail_origin_y,
@@ -103,6 +90,26 @@ impl GeometryTable {
             }
         }
     }
+}
+
+/// The rail inclined, its highest point at z = 0, and the distance of its origin from the track centre.
+///
+/// # Errors
+/// A rail that does not reach down to the gauge point on its gauge side.
+pub(crate) fn place_rail(rail: &Profile, placement: &Placement) -> Result<(Profile, f64)> {
+    let mut rail = rail.inclined(placement.rail_inclination, &KeyPath::of("track.rail_profile"))?;
+    rail.top_to_zero();
+    let gauge_point = gauge_point(&rail, placement.gauge_point_depth).ok_or_else(|| {
+        Error::input(
+            Fault::new(
+                KeyPath::of("track.gauge_point_depth"),
+                format!("{:.1} mm", 1e3 * placement.gauge_point_depth),
+                "a depth that the gauge side of the rail profile reaches",
+            )
+            .hint("the gauge side has negative y"),
+        )
+    })?;
+    Ok((rail, 0.5 * placement.gauge - gauge_point))
 }
 
 /// Gauge point: y at `depth` on the gauge side of the points themselves (the side may be too steep for the smoothed curve).
@@ -273,7 +280,7 @@ impl Average {
     }
 }
 
-fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
+pub(crate) fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
     let mut faults = Vec::new();
     if wheel.kind != ProfileKind::Wheel {
         faults.push(Fault::new(KeyPath::of("run.wheel_profile"), "a rail profile", "a wheel profile"));

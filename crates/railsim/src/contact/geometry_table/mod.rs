@@ -28,6 +28,8 @@
 
 mod build;
 
+pub(crate) use build::{check, place_rail};
+
 use crate::contact::profile::Profile;
 
 /// Contact angle of the wheel up to which it is all tread, rad.
