@@ -20,9 +20,12 @@ __all__ = [
     "_run_probes",
     "channels",
     "check_case",
+    "contact_gap",
     "equivalent_conicity",
     "fingerprint",
+    "hertz",
     "inspect_profile",
+    "non_elliptic",
     "profile_quality",
     "read_profile",
     "run_cases",
@@ -189,6 +192,35 @@ def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
 
     `None` where there is no oscillation of this amplitude: the rolling radius difference does not restore, or the
     wheel would leave the profiles.
+    """
+
+def hertz(
+    force: Buffer, kx: Buffer, ky: Buffer, youngs_modulus: float, poisson: float
+) -> Frame:
+    """Hertz's patch for arrays of float64 of one length: normal force (N) and relative curvatures (1/m) along and across.
+
+    Columns: semi-axes `a` along and `b` across (m), `approach` (m), `max_pressure` (Pa); NaN for a curvature that is not
+    positive.
+    """
+
+def non_elliptic(
+    y: Buffer,
+    separation: Buffer,
+    curvature: float,
+    youngs_modulus: float,
+    poisson: float,
+    force: float | None,
+    approach: float | None,
+) -> tuple[dict[str, float], Frame]:
+    """Patch by virtual penetration (Kik and Piotrowski) for a separation (m) at positions (m, rising), at a force (N) or an
+    approach (m).
+
+    The figures `approach`, `force`, `max_pressure`, `area`, `origin`, `a`, `b` (SI), and the outline: `y`, `half_length` (m).
+    """
+
+def contact_gap(pair_json: str, y: float, right: bool, half_width: float, step: float) -> Frame:
+    """Normal distance of the undeformed surfaces across the place where a wheel of a wheelset standing at `y` (m) touches
+    first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m), `k_xx` (1/m).
     """
 
 def run_cases(

@@ -26,7 +26,7 @@ mod module {
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
     #[pymodule_export]
-    use crate::patch::{hertz, non_elliptic};
+    use crate::patch::{contact_gap, hertz, non_elliptic};
     #[pymodule_export]
     use crate::probe::_run_probes;
     #[pymodule_export]

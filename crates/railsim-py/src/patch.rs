@@ -1,32 +1,35 @@
-//! Contact patches: Hertz's, and those that are no ellipses. Arrays come as buffers of doubles and leave as their bytes.
+//! Contact patches: Hertz's, and those that are no ellipses. Arrays come as buffers of doubles and leave as columns.
 
 use std::f64::consts::PI;
 
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyDict;
 use railsim::contact::hertz as law;
 use railsim::contact::non_elliptic::{Bodies, Gap};
+use railsim::contact::pair::Pair;
+use railsim::contact::search::{GapPoint, NoContact, RailShift};
 use railsim::{Error, Fault, KeyPath};
 
+use crate::arrow::Frame;
 use crate::errors::raise;
 
-/// Doubles as bytes for numpy.frombuffer.
-fn bytes<'py>(py: Python<'py>, values: impl IntoIterator<Item = f64>) -> Bound<'py, PyBytes> {
-    let raw: Vec<u8> = values.into_iter().flat_map(f64::to_ne_bytes).collect();
-    PyBytes::new(py, &raw)
+/// Columns that are no run's.
+fn table(columns: Vec<(&str, Vec<f64>)>) -> PyResult<Frame> {
+    let columns = columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect();
+    Frame::table(columns)
 }
 
 /// Semi-axes along and across, approach and peak pressure of Hertz's patch, for arrays of equal length.
 #[pyfunction]
-pub fn hertz<'py>(
-    py: Python<'py>,
+pub fn hertz(
+    py: Python<'_>,
     force: PyBuffer<f64>,
     kx: PyBuffer<f64>,
     ky: PyBuffer<f64>,
     youngs_modulus: f64,
     poisson: f64,
-) -> PyResult<[Bound<'py, PyBytes>; 4]> {
+) -> PyResult<Frame> {
     let modulus = law::effective_modulus(youngs_modulus, poisson);
     let (force, kx, ky) = (force.to_vec(py)?, kx.to_vec(py)?, ky.to_vec(py)?);
     let mut out = [const { Vec::new() }; 4];
@@ -39,7 +42,7 @@ pub fn hertz<'py>(
             column.push(value);
         }
     }
-    Ok(out.map(|column| bytes(py, column)))
+    table(["a", "b", "approach", "max_pressure"].into_iter().zip(out).collect())
 }
 
 /// Patch of two bodies with a separation given across the rolling direction, at a force or at an approach.
@@ -54,7 +57,7 @@ pub fn non_elliptic<'py>(
     poisson: f64,
     force: Option<f64>,
     approach: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<(Bound<'py, PyDict>, Frame)> {
     let bodies = Bodies { curvature, youngs_modulus, poisson };
     let gap = Gap::new(&y.to_vec(py)?, &separation.to_vec(py)?).map_err(|e| raise(py, e))?;
     let patch = match (force, approach) {
@@ -81,7 +84,35 @@ pub fn non_elliptic<'py>(
     for (name, value) in figures {
         out.set_item(name, value)?;
     }
-    out.set_item("y", bytes(py, patch.y))?;
-    out.set_item("half_length", bytes(py, patch.half_length))?;
-    Ok(out)
+    Ok((out, table(vec![("y", patch.y), ("half_length", patch.half_length)])?))
+}
+
+/// Gap of the undeformed surfaces across the place where one wheel of a standing wheelset touches first.
+#[pyfunction]
+pub fn contact_gap(
+    py: Python<'_>,
+    pair_json: &str,
+    y: f64,
+    right: bool,
+    half_width: f64,
+    step: f64,
+) -> PyResult<Frame> {
+    let found = py.detach(|| -> railsim::Result<Vec<GapPoint>> {
+        let pair = Pair::from_json(pair_json)?;
+        let rails = [RailShift::default(); 2];
+        let side = usize::from(right);
+        let gap = || {
+            let standing = pair.stand(y, 0.0, &rails)?;
+            let pose = pair.poses(y, standing.z, standing.roll, 0.0)[side];
+            let touch = if right { &standing.right } else { &standing.left };
+            let touch = touch.first().ok_or(NoContact::BesideTheRail)?;
+            pair.sides[side].gap_profile(&pose, &rails[side], touch, half_width, step)
+        };
+        gap().map_err(|e| {
+            Error::input(Fault::new(KeyPath::of("y"), format!("{y} m: {e}"), "a shift at which both wheels stand"))
+        })
+    });
+    let found = found.map_err(|e| raise(py, e))?;
+    let column = |of: fn(&GapPoint) -> f64| found.iter().map(of).collect();
+    table(vec![("s", column(|p| p.s)), ("gap", column(|p| p.gap)), ("k_xx", column(|p| p.k_xx))])
 }

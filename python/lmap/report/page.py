@@ -8,7 +8,6 @@ name and then renamed, so that a reader never meets half a file; `verdicts.json`
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import write_parquet
+from lmap.report.sheet import plotly_js, script_json
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 
 _PLOTLY = "<script>/* plotly.js */</script>"
@@ -65,7 +65,7 @@ def render(acceptance: Acceptance) -> bytes:
     before, place, after = page.partition(_PLOTLY)
     if not place:
         raise ValueError(f"the page's template has no {_PLOTLY}")
-    return b"".join((before.encode(), b"<script>", _plotly_js(), b"</script>", after.encode()))
+    return b"".join((before.encode(), b"<script>", plotly_js(), b"</script>", after.encode()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +191,7 @@ def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
                 "badge_class": _class(figure.badge or ""),
                 "cases": list(dict.fromkeys(view.case for view in figure.views)),
                 "stretches": list(dict.fromkeys(view.stretch for view in figure.views)),
-                "json": _script_json(views),
+                "json": script_json(views),
             }
         )
     return shown
@@ -225,22 +225,6 @@ def _folded(value: Any) -> Any:
             return f"({len(value)} points)"
         return [_folded(item) for item in value]
     return value
-
-
-def _script_json(value: Any) -> Any:
-    """JSON that may stand in a script element: nothing in it can end the element or open a comment."""
-    from markupsafe import Markup
-
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    for character in "<>&\u2028\u2029":
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    return Markup(text)
-
-
-def _plotly_js() -> bytes:
-    """The library as the plotly package brings it, without importing that package's Python."""
-    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
-    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
 
 
 def _class(verdict: str) -> str:
