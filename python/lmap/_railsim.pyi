@@ -7,7 +7,7 @@ was written. SI units; profiles alone are in millimetres, as their files are.
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict, final
 
-from typing_extensions import CapsuleType
+from typing_extensions import Buffer, CapsuleType
 
 __all__ = [
     "ConvergenceError",
@@ -21,10 +21,12 @@ __all__ = [
     "channels",
     "check_case",
     "contact_gap",
+    "creep_forces",
     "equivalent_conicity",
     "fingerprint",
     "hertz",
     "inspect_profile",
+    "kalker_coefficients",
     "non_elliptic",
     "profile_quality",
     "read_profile",
@@ -47,7 +49,7 @@ class _Fault(TypedDict):
     line: int | None  # from 1; known only where TOML was read
 
 class _Ended(TypedDict):
-    kind: Literal["end_of_track", "diverged"]
+    kind: Literal["end_of_track", "diverged", "computed"]  # the last: a table that is no run's
     t: float | None  # s; of the last row, or of the divergence
     s: float | None  # m
     message: str | None
@@ -194,9 +196,7 @@ def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
     wheel would leave the profiles.
     """
 
-def hertz(
-    force: Buffer, kx: Buffer, ky: Buffer, youngs_modulus: float, poisson: float
-) -> Frame:
+def hertz(force: Buffer, kx: Buffer, ky: Buffer, youngs_modulus: float, poisson: float) -> Frame:
     """Hertz's patch for arrays of float64 of one length: normal force (N) and relative curvatures (1/m) along and across.
 
     Columns: semi-axes `a` along and `b` across (m), `approach` (m), `max_pressure` (Pa); NaN for a curvature that is not
@@ -222,6 +222,25 @@ def contact_gap(pair_json: str, y: float, right: bool, half_width: float, step: 
     """Normal distance of the undeformed surfaces across the place where a wheel of a wheelset standing at `y` (m) touches
     first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m), `k_xx` (1/m).
     """
+
+def creep_forces(
+    law_json: str,
+    contacts: dict[str, float | Sequence[float] | Buffer],
+    falling_json: str | None = None,
+) -> Frame:
+    """Creep forces on the wheel: a row of `fx`, `fy` (N) for each contact, and `mz` (N m) where `c33` is given.
+
+    `law_json` is a law as `run.creep` has it. `contacts` has `a`, `b` (m, along rolling and across), `n` (N), `c11`, `c22`,
+    `c23`, `shear_modulus` (Pa), `xi`, `eta`, `phi` (1/m) and `mu`, and may have `c33` and `speed` (m/s): a number for
+    all contacts, or an array of float64 or a list with one for each. `falling_json`, `{"ratio": A, "decay": B}`, makes
+    `mu` fall with the slip velocity `speed` times creepage. `mz` is NaN for a law that gives no moment.
+
+    Axes of the contact: x rolling, y lateral, right-handed with the normal; positive creepage gives negative force.
+    `InputError` names the array and the index.
+    """
+
+def kalker_coefficients(a_over_b: Sequence[float], poisson: float) -> Frame:
+    """Kalker's `c11`, `c22`, `c23`, `c33` for axis ratios (a along rolling) at one Poisson's ratio."""
 
 def run_cases(
     cases: Sequence[str],

@@ -5,6 +5,7 @@
 
 mod arrow;
 mod contact;
+mod creep;
 mod enter;
 mod errors;
 mod patch;
@@ -21,6 +22,8 @@ mod module {
     use crate::arrow::Frame;
     #[pymodule_export]
     use crate::contact::equivalent_conicity;
+    #[pymodule_export]
+    use crate::creep::{creep_forces, kalker_coefficients};
     #[pymodule_export]
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,

@@ -109,7 +109,11 @@ pub fn contact_gap(
             pair.sides[side].gap_profile(&pose, &rails[side], touch, half_width, step)
         };
         gap().map_err(|e| {
-            Error::input(Fault::new(KeyPath::of("y"), format!("{y} m: {e}"), "a shift at which both wheels stand"))
+            Error::input(Fault::new(
+                KeyPath::of("y"),
+                format!("{y} m: {e}"),
+                "a shift at which both wheels stand",
+            ))
         })
     });
     let found = found.map_err(|e| raise(py, e))?;

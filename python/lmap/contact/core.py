@@ -23,12 +23,16 @@ def broadcast(values: Mapping[str, ArrayLike]) -> tuple[dict[str, Array], tuple[
             arrays[name] = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError):
             found = f"{value!r}" if np.ndim(value) == 0 else "something that is no array of numbers"
-            raise InputProblem(Problem(key=(name,), found=found, allowed="a number or an array of numbers")) from None
+            raise InputProblem(
+                Problem(key=(name,), found=found, allowed="a number or an array of numbers")
+            ) from None
     try:
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
-        raise InputProblem(Problem(found=f"arrays of {shapes}", allowed="shapes that numpy broadcasts")) from None
+        raise InputProblem(
+            Problem(found=f"arrays of {shapes}", allowed="shapes that numpy broadcasts")
+        ) from None
     return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}, shape
 
 
@@ -48,13 +52,17 @@ def refuse(arrays: Mapping[str, Array], rules: Mapping[str, tuple[Callable[[Arra
         raise InputProblem(problems)
 
 
-def call(function: Callable[..., Result], *arguments: Any, shape: tuple[int, ...] = (), **options: Any) -> Result:
+def call(
+    function: Callable[..., Result], *arguments: Any, shape: tuple[int, ...] = (), **options: Any
+) -> Result:
     """A function of the core, with its errors as ours; `shape` turns the index of a flattened array into that of the array."""
     railsim = toml.core()
     try:
         return function(*arguments, **options)
     except railsim.InputError as error:
-        raise InputProblem([_unravelled(problem, shape) for problem in toml.problems_of_core(error)]) from None
+        raise InputProblem(
+            [_unravelled(problem, shape) for problem in toml.problems_of_core(error)]
+        ) from None
     except railsim.RailsimError as error:
         raise SimulationProblem(str(error)) from None
 
@@ -62,7 +70,9 @@ def call(function: Callable[..., Result], *arguments: Any, shape: tuple[int, ...
 def _unravelled(problem: Problem, shape: tuple[int, ...]) -> Problem:
     if len(shape) > 1 and len(problem.key) == 2 and isinstance(problem.key[1], int):
         index = (int(i) for i in np.unravel_index(problem.key[1], shape))
-        return Problem(key=(problem.key[0], *index), found=problem.found, allowed=problem.allowed, hint=problem.hint)
+        return Problem(
+            key=(problem.key[0], *index), found=problem.found, allowed=problem.allowed, hint=problem.hint
+        )
     return problem
 
 

@@ -140,9 +140,13 @@ class Pair:
         other = left or {}
         for key in other.keys() - {"wheel", "rail", "radius"}:
             hint = nearest_hint(key, ("wheel", "rail", "radius"))
-            raise InputProblem(Problem(key=("left", key), found="an unknown key", allowed="wheel, rail, radius", hint=hint))
+            raise InputProblem(
+                Problem(key=("left", key), found="an unknown key", allowed="wheel, rail, radius", hint=hint)
+            )
         arrays, _ = broadcast({**numbers, "radius": radius, "left.radius": other.get("radius", radius)})
-        positive = dict.fromkeys(("radius", "left.radius", "gauge", "flange_back_distance", "smoothing"), POSITIVE)
+        positive = dict.fromkeys(
+            ("radius", "left.radius", "gauge", "flange_back_distance", "smoothing"), POSITIVE
+        )
         refuse(arrays, {**positive, "youngs_modulus": POSITIVE, "poisson": POISSON})
         right = {"wheel": self.wheel.points.tolist(), "rail": self.rail.points.tolist(), "radius": radius}
         written = {
@@ -166,7 +170,9 @@ class Pair:
         """
         arrays, shape = broadcast({"y": y})
         refuse(arrays, {})
-        found = call(toml.core().rolling_radius_difference, self.json, arrays["y"].ravel().tolist(), _free(roll))
+        found = call(
+            toml.core().rolling_radius_difference, self.json, arrays["y"].ravel().tolist(), _free(roll)
+        )
         return _numbers(found, shape)
 
     def conicity(self, amplitude: ArrayLike, *, method: str = "integration", roll: Roll = "level") -> Array:
@@ -202,7 +208,14 @@ class Pair:
         refuse({name: np.asarray(value) for name, value in given.items()}, {"load": POSITIVE})
         shifts = arrays["y"].ravel().tolist()
         frame = call(
-            toml.core().contact_map, self.json, shifts, yaw, _free(roll), load, tuple(rail_shift), tuple(rail_roll)
+            toml.core().contact_map,
+            self.json,
+            shifts,
+            yaw,
+            _free(roll),
+            load,
+            tuple(rail_shift),
+            tuple(rail_roll),
         )
         return Contacts(**columns(frame, (part.name for part in fields(Contacts))))
 
@@ -210,7 +223,9 @@ class Pair:
         """Shifts (m) at which the left and the right flange come to bear: the first is negative, the second positive; level axle."""
         return -self._bears(-1.0), self._bears(1.0)
 
-    def patch(self, y: float = 0.0, *, side: Literal["left", "right"] = "right", load: float = 1e5) -> NonElliptic:
+    def patch(
+        self, y: float = 0.0, *, side: Literal["left", "right"] = "right", load: float = 1e5
+    ) -> NonElliptic:
         """The patch of one wheel at a shift (m) without an ellipse: virtual penetration, `non_elliptic`, of the place that touches first.
 
         `load` is the normal force, N. The pose is that of the rigid wheelset, rolled until both wheels touch.
@@ -239,7 +254,9 @@ class Pair:
             if self._on_flange(direction * high, direction):
                 for _ in range(12):
                     middle = 0.5 * (low + high)
-                    low, high = (low, middle) if self._on_flange(direction * middle, direction) else (middle, high)
+                    low, high = (
+                        (low, middle) if self._on_flange(direction * middle, direction) else (middle, high)
+                    )
                 return high
             low = high
         return float("nan")
@@ -254,7 +271,9 @@ class Pair:
         try:
             found = self.contacts(0.0, roll="level")
         except SimulationProblem as error:
-            raise InputProblem(Problem(found=str(error), allowed="a wheelset that stands on its rails")) from None
+            raise InputProblem(
+                Problem(found=str(error), allowed="a wheelset that stands on its rails")
+            ) from None
         shown = f"{1e3 * self.gauge:.6g} mm"
         if len(found) == 0:
             raise InputProblem(
@@ -277,7 +296,9 @@ class Pair:
             )
 
 
-def curve_conicity(y: ArrayLike, difference: ArrayLike, amplitude: ArrayLike, *, method: str = "integration") -> Array:
+def curve_conicity(
+    y: ArrayLike, difference: ArrayLike, amplitude: ArrayLike, *, method: str = "integration"
+) -> Array:
     """Equivalent conicity at amplitudes (m, any shape) of a rolling radius difference given by points (m, shape (k,), y rising).
 
     As `Pair.conicity`, for curves from elsewhere: measured, or of a standard.
@@ -297,14 +318,21 @@ def _profile(source: Profile | ArrayLike | str, kind: Kind) -> Profile:
         return read_profile(source, kind=kind)
     profile = profile_of(source, kind, name=kind)
     if profile.kind not in (None, kind):
-        raise InputProblem(Problem(key=(kind,), found=f"the profile of a {profile.kind}", allowed=f"that of a {kind}"))
+        raise InputProblem(
+            Problem(key=(kind,), found=f"the profile of a {profile.kind}", allowed=f"that of a {kind}")
+        )
     return profile
 
 
 def _free(roll: str) -> bool:
     if roll not in ("level", "free"):
         raise InputProblem(
-            Problem(key=("roll",), found=f'"{roll}"', allowed="level, free", hint=nearest_hint(roll, ("level", "free")))
+            Problem(
+                key=("roll",),
+                found=f'"{roll}"',
+                allowed="level, free",
+                hint=nearest_hint(roll, ("level", "free")),
+            )
         )
     return roll == "free"
 

@@ -137,13 +137,17 @@ def write_profile(
         files.write(path, text.encode())
     except OSError as error:
         found = f"a place where nothing can be written ({error.strerror})"
-        raise InputProblem(Problem(file=files.shown(path), found=found, allowed="a file in a folder that exists")) from None
+        raise InputProblem(
+            Problem(file=files.shown(path), found=found, allowed="a file in a folder that exists")
+        ) from None
 
 
 def quality(profile: Profile | ArrayLike, kind: Kind | None = None) -> tuple[Finding, ...]:
     """What is remarkable about points: kinks, gaps, doubled points, overhangs, crossings; the most serious first."""
     points = profile_of(profile, kind)
-    return _findings(json.loads(call(toml.core().profile_quality, json.dumps(points.points.tolist()), points.kind)))
+    return _findings(
+        json.loads(call(toml.core().profile_quality, json.dumps(points.points.tolist()), points.kind))
+    )
 
 
 def smooth(profile: Profile | ArrayLike, kind: Kind | None = None, half_width: float = 1.0) -> Smoothed:
@@ -153,7 +157,9 @@ def smooth(profile: Profile | ArrayLike, kind: Kind | None = None, half_width: f
     points = profile_of(profile, kind)
     if points.kind is None:
         raise InputProblem(Problem(key=("kind",), found="nothing", allowed="wheel, rail"))
-    curve = json.loads(call(toml.core().smooth_profile, json.dumps(points.points.tolist()), points.kind, half_width))
+    curve = json.loads(
+        call(toml.core().smooth_profile, json.dumps(points.points.tolist()), points.kind, half_width)
+    )
     return Smoothed(**{name: np.array(values, dtype=np.float64) for name, values in curve.items()})
 
 
@@ -202,7 +208,9 @@ def _text(path: Path) -> str:
 def _without_name(problem: Problem, name: str) -> Problem:
     """A message of the core says which profile it is about in its key: here the file says it."""
     rest = problem.key[2:] if problem.key[:2] == ("profiles", name) else problem.key
-    return Problem(found=problem.found, allowed=problem.allowed, key=rest, line=problem.line, hint=problem.hint)
+    return Problem(
+        found=problem.found, allowed=problem.allowed, key=rest, line=problem.line, hint=problem.hint
+    )
 
 
 def _findings(found: Sequence[Mapping[str, Any]]) -> tuple[Finding, ...]:

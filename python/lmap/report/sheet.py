@@ -93,7 +93,9 @@ def render(sheet: Sheet) -> bytes:
     from markupsafe import Markup
 
     templates = resources.files("lmap.report") / "templates"
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     template = environment.from_string((templates / "sheet.html.j2").read_text(encoding="utf-8"))
     page = template.render(
         page=sheet,
@@ -126,7 +128,10 @@ def plotly_js() -> bytes:
 
 def _figure(title: str, caption: str, plots: Sequence[Plot]) -> dict[str, Any]:
     choices = [plot.choice for plot in plots]
-    views = [{"case": plot.choice, "stretch": "", "caption": plot.caption, "message": None, **_plotly(plot)} for plot in plots]
+    views = [
+        {"case": plot.choice, "stretch": "", "caption": plot.caption, "message": None, **_plotly(plot)}
+        for plot in plots
+    ]
     return {"title": title, "caption": caption, "choices": choices, "json": script_json(views)}
 
 
@@ -182,5 +187,3 @@ def packed(values: ArrayLike) -> dict[str, str]:
 def _escape(text: str) -> str:
     """plotly.js reads a part of HTML in its texts: none of it may come from a name."""
     return html.escape(text, quote=False)
-
-

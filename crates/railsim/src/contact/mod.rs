@@ -10,6 +10,7 @@
 pub mod conicity;
 pub mod creep;
 pub mod creepage;
+pub mod friction;
 pub mod geometry_table;
 pub mod hertz;
 pub mod kalker_table;

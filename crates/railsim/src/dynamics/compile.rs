@@ -117,7 +117,7 @@ fn contact(case: &Case) -> Result<Contact> {
     let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
     Ok(Contact::Profiles {
         table: Box::new(geometry_table(case)?),
-        law: case.run.creep,
+        law: case.run.creep.with_poisson(settings.poisson),
         shear_modulus: settings.youngs_modulus / (2.0 * (1.0 + settings.poisson)),
         dissipation: if wheel_load > 0.0 { settings.damping / wheel_load } else { 0.0 },
         friction: case.run.friction,
