@@ -126,6 +126,7 @@ class Pair:
         """Of the right side, upright."""
         self.radius = radius
         self.gauge = gauge
+        self.inclination = inclination
         self.youngs_modulus, self.poisson = youngs_modulus, poisson
         numbers = {
             "gauge": gauge,
