@@ -21,15 +21,19 @@ __all__ = [
     "channels",
     "check_case",
     "contact_gap",
+    "contact_map",
     "creep_forces",
+    "curve_conicity",
     "equivalent_conicity",
     "fingerprint",
     "hertz",
     "inspect_profile",
     "kalker_coefficients",
     "non_elliptic",
+    "pair_conicity",
     "profile_quality",
     "read_profile",
+    "rolling_radius_difference",
     "run_cases",
     "smooth_profile",
     "toml_line",
@@ -241,6 +245,61 @@ def creep_forces(
 
 def kalker_coefficients(a_over_b: Sequence[float], poisson: float) -> Frame:
     """Kalker's `c11`, `c22`, `c23`, `c33` for axis ratios (a along rolling) at one Poisson's ratio."""
+
+# A pair, as JSON: `left` and `right` (the same as left where missing), each with `wheel` and `rail` (points [y, z] in mm; y
+# outward, z down; wheel with its running circle at y = 0 and the flange at negative y, rail upright with its top at the
+# origin) and `radius` (m); `gauge`, `gauge_point_depth` (0.014), `rail_inclination` (slope, 0), `flange_back_distance`,
+# `tape_from_flange_back` (0.07), `smoothing` (half-width of the profile smoothing, 0.001), in m; `youngs_modulus` (Pa), `poisson`.
+# The JSON of a case does as well: its vehicle's wheels on its track. Unknown or missing keys are an `InputError`.
+
+def rolling_radius_difference(
+    pair_json: str, shifts: Sequence[float], free_roll: bool = False
+) -> list[float | None]:
+    """Rolling radius of the right wheel less that of the left (m) with the wheelset shifted to the right by each of
+    `shifts` (m), rigid contact by direct search; `None` where a wheel would stand beside or on the end of its profile.
+
+    The axle stays level, as in the reference curves of EN 15302, or rolls until both wheels touch.
+    """
+
+def pair_conicity(
+    pair_json: str,
+    amplitudes: Sequence[float],
+    method: str = "integration",
+    free_roll: bool = False,
+    step: float = 1e-4,
+) -> list[float | None]:
+    """Equivalent conicity of a pair at each lateral amplitude (m), from the rolling radius difference every `step` (m).
+
+    `method`: `integration` (EN 15302's reference), `regression` (two-step linear), `harmonic`. `None` where there is no
+    oscillation of that amplitude.
+    """
+
+def curve_conicity(
+    y: Sequence[float],
+    difference: Sequence[float],
+    amplitudes: Sequence[float],
+    method: str = "integration",
+) -> list[float | None]:
+    """The same of a rolling radius difference given by its points (m, y rising)."""
+
+def contact_map(
+    pair_json: str,
+    shifts: Sequence[float],
+    yaw: float = 0.0,
+    free_roll: bool = True,
+    load: float | None = None,
+    rail_shift: tuple[float, float] = (0.0, 0.0),
+    rail_roll: tuple[float, float] = (0.0, 0.0),
+) -> Frame:
+    """Every contact of both wheels at each shift (m), a row each, by direct search.
+
+    Without `load` (N per wheel, vertical) rigid: the up to three closest places of a wheel, `gap` along the normal (the
+    first touches). With it elastic: patches, with `normal` (N), semi-axes `a` and `b` (m), relative lateral `curvature`
+    (1/m) and `spread` (0 for Hertz; beyond 0.5 the patch is no ellipse). Columns: `y` (of the wheelset), `side` (-1 left, 1 right),
+    `rank`, `part` (0 tread, 1 flange, 2 back of flange), `roll`, `z` of the wheelset, `gap`, `y_rail`, `z_rail`, `y_wheel`, `z_wheel`
+    (side coordinates: outward, down), `x` (ahead of the axle), `angle`, `radius`, `k_xx`, `k_yy` and those. Shifts at which a
+    wheel does not stand have no rows. `rail_shift` (m, outward) and `rail_roll` (rad, field side down): left, right.
+    """
 
 def run_cases(
     cases: Sequence[str],

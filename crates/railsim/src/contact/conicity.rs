@@ -232,7 +232,7 @@ impl RadiusCurve {
         let (mut low, mut high) = (centre - 2.0 * amplitude, centre);
         low = low.max(*self.y.first()?);
         high = high.min(self.y.last()? - 2.0 * amplitude);
-        if !(low < high) || excess(low)? < 0.0 || excess(high)? > 0.0 {
+        if low >= high || excess(low)? < 0.0 || excess(high)? > 0.0 {
             return None;
         }
         for _ in 0..100 {

@@ -5,6 +5,7 @@ use crate::body::{RigidBody, Wheelset};
 use crate::connection::{Law, Mount};
 use crate::contact::geometry_table::{GeometryTable, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
+use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
@@ -68,6 +69,20 @@ pub fn model(case: &Case) -> Result<Model> {
 /// # Errors
 /// Faults in the profiles.
 pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
+    let (wheel, rail, placement) = contact_pair(case)?;
+    GeometryTable::build(&wheel, &rail, &placement)
+}
+
+/// The same pair for direct search ([`Side`]).
+///
+/// # Errors
+/// As [`geometry_table`].
+pub fn side(case: &Case) -> Result<Side> {
+    let (wheel, rail, placement) = contact_pair(case)?;
+    Side::new(&wheel, &rail, &placement)
+}
+
+fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
     let radius = case.vehicle.wheelsets.first();
     let Some(set) = radius else {
         return Err(Error::input(Fault::new(
@@ -99,7 +114,7 @@ pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
         youngs_modulus: case.vehicle.contact.youngs_modulus,
         poisson: case.vehicle.contact.poisson,
     };
-    GeometryTable::build(&wheel, &rail, &placement)
+    Ok((wheel, rail, placement))
 }
 
 fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
