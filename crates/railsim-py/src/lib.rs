@@ -8,11 +8,8 @@ mod contact;
 mod creep;
 mod enter;
 mod errors;
-<<<<<<< HEAD
-mod patch;
-=======
 mod geometry;
->>>>>>> part/geometry
+mod patch;
 mod probe;
 mod profile;
 mod run;
@@ -33,11 +30,9 @@ mod module {
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
     #[pymodule_export]
-<<<<<<< HEAD
-    use crate::patch::{contact_gap, hertz, non_elliptic};
-=======
     use crate::geometry::{contact_map, curve_conicity, pair_conicity, rolling_radius_difference};
->>>>>>> part/geometry
+    #[pymodule_export]
+    use crate::patch::{contact_gap, hertz, non_elliptic};
     #[pymodule_export]
     use crate::probe::_run_probes;
     #[pymodule_export]
