@@ -121,7 +121,7 @@ def write(path: Path, content: bytes) -> None:
 
 
 def put(path: Path, write: Callable[[Path], object]) -> None:
-    """Lets a file be written under a temporary name, then renames it: also when the disk is full or the program stops."""
+    """Lets a file be written under a temporary name, then renames it: never half a file, not on a full disk either."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         write(temporary)

@@ -7,8 +7,9 @@
     patch = contact.hertz(1e5, 1 / 0.46, 1 / 0.3)
     contact.creep_forces("fastsim", [0.0, 0.001, 0.01], a=patch.a, b=patch.b, n=1e5, mu=0.3).fx
 
-SI units; profiles alone are in millimetres, as their files are. x forward, y outward (side coordinates) or right (wheelset), z down; creep
-forces act on the wheel in the axes of the contact. `InputProblem` for everything that is refused.
+SI units; profiles alone are in millimetres, as their files are. x forward, y outward (side coordinates) or
+right (wheelset), z down; creep forces act on the wheel in the axes of the contact. `InputProblem` for
+everything that is refused.
 """
 
 from __future__ import annotations

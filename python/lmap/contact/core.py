@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lmap import toml
-from lmap.errors import InputProblem, Problem, SimulationProblem
+from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -37,7 +37,9 @@ def broadcast(values: Mapping[str, ArrayLike]) -> tuple[dict[str, Array], tuple[
 
 
 def refuse(arrays: Mapping[str, Array], rules: Mapping[str, tuple[Callable[[Array], Any], str]]) -> None:
-    """An `InputProblem` for every array with a value that is not finite or that its rule refuses: the first such value of each."""
+    """An `InputProblem` for every array with a value that is not finite or that its rule refuses: the first
+    such value of each.
+    """
     problems = []
     for name, array in arrays.items():
         rule, allowed = rules.get(name, (np.isfinite, "a finite number"))
@@ -45,8 +47,8 @@ def refuse(arrays: Mapping[str, Array], rules: Mapping[str, tuple[Callable[[Arra
         if len(bad):
             index = tuple(int(i) for i in bad[0])
             value = float(array[index])
-            # one number for all contacts is written once
-            key = (name,) if np.ndim(array.base) == 0 and array.base is not None else (name, *index)
+            # one number for all contacts is written once: its broadcast array has no strides
+            key: KeyPath = (name, *index) if any(array.strides) else (name,)
             problems.append(Problem(key=key, found=f"{value:g}", allowed=allowed))
     if problems:
         raise InputProblem(problems)
@@ -55,7 +57,9 @@ def refuse(arrays: Mapping[str, Array], rules: Mapping[str, tuple[Callable[[Arra
 def call(
     function: Callable[..., Result], *arguments: Any, shape: tuple[int, ...] = (), **options: Any
 ) -> Result:
-    """A function of the core, with its errors as ours; `shape` turns the index of a flattened array into that of the array."""
+    """A function of the core, with its errors as ours; `shape` turns the index of a flattened array into that
+    of the array.
+    """
     railsim = toml.core()
     try:
         return function(*arguments, **options)

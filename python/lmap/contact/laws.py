@@ -60,14 +60,17 @@ def creep_forces(
     """Creep forces on the wheel by a law: numbers and arrays of shapes that broadcast.
 
     - `law`: a name of `LAWS`, or a table as a case has it: `{"kind": "fastsim", "nx": 20, "ny": 20}`;
-    - `xi`, `eta`: longitudinal and lateral creepage, `phi`: spin (1/m): speed of the wheel's surface less the rail's over
-      the rolling speed, in contact axes (x rolling, y lateral, right-handed with the normal). Forces oppose it;
-    - `a`, `b`: semi-axes along and across (m, > 0), `n`: normal force (N, >= 0), `mu`: coefficient of friction (>= 0);
-    - `falling`: `{"ratio": A, "decay": B}` (s/m) lets `mu` fall with the slip velocity, (1 - A) exp(-B w) + A, w = `speed`
-      (m/s) times the creepage without spin.
+    - `xi`, `eta`: longitudinal and lateral creepage, `phi`: spin (1/m): speed of the wheel's surface less the
+      rail's over the rolling speed, in contact axes (x rolling, y lateral, right-handed with the normal).
+      Forces oppose it;
+    - `a`, `b`: semi-axes along and across (m, > 0), `n`: normal force (N, >= 0), `mu`: coefficient of friction
+      (>= 0);
+    - `falling`: `{"ratio": A, "decay": B}` (s/m) lets `mu` fall with the slip velocity, (1 - A) exp(-B w) + A,
+      w = `speed` (m/s) times the creepage without spin.
 
-    Kalker's coefficients come from `kalker`. Papers and equations of each law: `crates/railsim/src/contact/creep/`.
-    `InputProblem` names array and index of what is refused, and the nearest law to an unknown one.
+    Kalker's coefficients come from `kalker`. Papers and equations of each law:
+    `crates/railsim/src/contact/creep/`. `InputProblem` names array and index of what is refused, and the
+    nearest law to an unknown one.
 
     >>> creep_forces("fastsim", [0.0, 0.001, 0.01], a=0.006, b=0.006, n=1e5, mu=0.3).fx
     """
@@ -98,7 +101,7 @@ def creep_forces(
 
 def law_of(law: str | Mapping[str, Any], poisson: float = POISSON_RATIO) -> dict[str, Any]:
     """A law as a case writes it; an `InputProblem` with the nearest name for an unknown one."""
-    written = {"kind": law} if isinstance(law, str) else dict(law)
+    written: dict[str, Any] = {"kind": law} if isinstance(law, str) else dict(law)
     kind = written.get("kind")
     if not isinstance(kind, str) or kind not in LAWS:
         found = "no kind" if kind is None else f'"{kind}"'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import dataclass, fields
 from typing import Any, Literal
@@ -93,15 +94,19 @@ class Contacts:
 class Pair:
     """A wheelset on a track, by direct search: rigid and elastic contact at any shift.
 
-    `wheel` and `rail` are a `Profile`, points ([y, z] in mm, shape (k, 2)), a path or a name that ships; lengths in m:
+    `wheel` and `rail` are a `Profile`, points ([y, z] in mm, shape (k, 2)), a path or a name that ships;
+    lengths in m:
 
     - `gauge`, measured `gauge_point_depth` below the top of the rail;
-    - `inclination` of the rails towards the track centre, as a slope (0.05 for 1:20, 0 where the profile is drawn inclined);
-    - `flange_back`, between the backs of the flanges, and from there to the running circle `tape_from_flange_back`;
+    - `inclination` of the rails towards the track centre, as a slope (0.05 for 1:20, 0 where the profile is
+      drawn inclined);
+    - `flange_back`, between the backs of the flanges, and from there to the running circle
+      `tape_from_flange_back`;
     - `radius` of the running circle.
 
-    `left` (`{"wheel": ..., "rail": ..., "radius": ...}`, any of them) sets the left side apart. `InputProblem` for a profile of the
-    wrong side or in another unit, one that crosses itself, and a gauge that lets the wheelset fall in or that it does not fit.
+    `left` (`{"wheel": ..., "rail": ..., "radius": ...}`, any of them) sets the left side apart. `InputProblem`
+    for a profile of the wrong side or in another unit, one that crosses itself, and a gauge that lets the
+    wheelset fall in or that it does not fit.
     """
 
     def __init__(
@@ -166,8 +171,9 @@ class Pair:
     def rolling_radius_difference(self, y: ArrayLike, *, roll: Roll = "level") -> Array:
         """Rolling radius of the right wheel less that of the left (m) at shifts to the right (m, any shape).
 
-        NaN where a wheel would stand beside its rail or on the end of a profile. `roll="level"` keeps the axle level, as the reference
-        curves of EN 15302 do; `"free"` lets it roll until both wheels touch, which gives 3 to 5 % more on round heads.
+        NaN where a wheel would stand beside its rail or on the end of a profile. `roll="level"` keeps the axle
+        level, as the reference curves of EN 15302 do; `"free"` lets it roll until both wheels touch, which
+        gives 3 to 5 % more on round heads.
         """
         arrays, shape = broadcast({"y": y})
         refuse(arrays, {})
@@ -177,7 +183,8 @@ class Pair:
         return _numbers(found, shape)
 
     def conicity(self, amplitude: ArrayLike, *, method: str = "integration", roll: Roll = "level") -> Array:
-        """Equivalent conicity tan(gamma_e) by EN 15302 at lateral amplitudes (m, any shape, half of peak to peak).
+        """Equivalent conicity tan(gamma_e) by EN 15302 at lateral amplitudes (m, any shape, half of peak to
+        peak).
 
         `method` is one of `METHODS`. NaN where there is no oscillation of that amplitude.
         """
@@ -200,9 +207,10 @@ class Pair:
     ) -> Contacts:
         """Every contact of both wheels at shifts to the right (m, any shape), a row each.
 
-        Without `load` rigid: up to three closest places of a wheel, the first of which touches. With it (N, vertical, of each wheel)
-        elastic: up to three patches, Hertz each. `yaw` in rad, right-handed. `rail_shift` (m, outward) and `rail_roll` (rad,
-        field side down) move the left and the right rail. Shifts at which a wheel does not stand have no rows.
+        Without `load` rigid: up to three closest places of a wheel, the first of which touches. With it (N,
+        vertical, of each wheel) elastic: up to three patches, Hertz each. `yaw` in rad, right-handed.
+        `rail_shift` (m, outward) and `rail_roll` (rad, field side down) move the left and the right rail.
+        Shifts at which a wheel does not stand have no rows.
         """
         arrays, _ = broadcast({"y": y})
         given = {**arrays, "yaw": np.float64(yaw), **({} if load is None else {"load": np.float64(load)})}
@@ -221,13 +229,16 @@ class Pair:
         return Contacts(**columns(frame, (part.name for part in fields(Contacts))))
 
     def flange_play(self) -> tuple[float, float]:
-        """Shifts (m) at which the left and the right flange come to bear: the first is negative, the second positive; level axle."""
+        """Shifts (m) at which the left and the right flange come to bear: the first is negative, the second
+        positive; level axle.
+        """
         return -self._bears(-1.0), self._bears(1.0)
 
     def patch(
         self, y: float = 0.0, *, side: Literal["left", "right"] = "right", load: float = 1e5
     ) -> NonElliptic:
-        """The patch of one wheel at a shift (m) without an ellipse: virtual penetration, `non_elliptic`, of the place that touches first.
+        """The patch of one wheel at a shift (m) without an ellipse: virtual penetration, `non_elliptic`, of
+        the place that touches first.
 
         `load` is the normal force, N. The pose is that of the rigid wheelset, rolled until both wheels touch.
         """
@@ -249,18 +260,20 @@ class Pair:
         )
 
     def _bears(self, direction: float) -> float:
-        steps = np.arange(0.0, _FAR, 2.5e-4)
-        low = 0.0
-        for high in steps[1:].tolist():
+        for low, high in itertools.pairwise(np.arange(0.0, _FAR, 2.5e-4).tolist()):
             if self._on_flange(direction * high, direction):
-                for _ in range(12):
-                    middle = 0.5 * (low + high)
-                    low, high = (
-                        (low, middle) if self._on_flange(direction * middle, direction) else (middle, high)
-                    )
-                return high
-            low = high
+                return self._between(low, high, direction)
         return float("nan")
+
+    def _between(self, low: float, high: float, direction: float) -> float:
+        """Where the flange comes to bear, to a tenth of a micrometre."""
+        while high - low > 1e-7:
+            middle = 0.5 * (low + high)
+            if self._on_flange(direction * middle, direction):
+                high = middle
+            else:
+                low = middle
+        return high
 
     def _on_flange(self, y: float, side: float) -> bool:
         found = self.contacts(y, roll="level")
@@ -280,7 +293,8 @@ class Pair:
             raise InputProblem(
                 Problem(
                     key=("gauge",),
-                    found=f"{shown}, at which the wheelset does not stand: it falls in between the rails, or a profile ends first",
+                    found=f"{shown}, at which the wheelset does not stand: it falls in between the rails, "
+                    "or a profile ends first",
                     allowed="a gauge at which both wheels stand on their rails",
                     hint="see flange back, wheel profile width and the unit",
                 )
@@ -300,7 +314,8 @@ class Pair:
 def curve_conicity(
     y: ArrayLike, difference: ArrayLike, amplitude: ArrayLike, *, method: str = "integration"
 ) -> Array:
-    """Equivalent conicity at amplitudes (m, any shape) of a rolling radius difference given by points (m, shape (k,), y rising).
+    """Equivalent conicity at amplitudes (m, any shape) of a rolling radius difference given by points (m,
+    shape (k,), y rising).
 
     As `Pair.conicity`, for curves from elsewhere: measured, or of a standard.
     """

@@ -50,9 +50,9 @@ def hertz(
 ) -> Ellipse:
     """Elliptical contact of two bodies of one material.
 
-    `n` (N, >= 0), and the relative curvatures `k_x` along and `k_y` across the rolling direction (1/m, > 0, the sum over both bodies,
-    convex positive) broadcast. K. L. Johnson, Contact Mechanics (1985), section 4.2. `InputProblem` names array and index of what is
-    refused.
+    `n` (N, >= 0), and the relative curvatures `k_x` along and `k_y` across the rolling direction (1/m, > 0,
+    the sum over both bodies, convex positive) broadcast. K. L. Johnson, Contact Mechanics (1985), section 4.2.
+    `InputProblem` names array and index of what is refused.
 
     >>> patch = hertz(1e5, 1 / 0.46, 1 / 0.3)  # a wheel of 460 mm on a rail head of 300 mm
     """
@@ -65,10 +65,12 @@ def hertz(
 
 
 def kalker(a_over_b: ArrayLike, poisson: float = POISSON_RATIO) -> Kalker:
-    """Kalker's coefficients of the linear theory for axis ratios (a along rolling over b across, > 0) of any shape.
+    """Kalker's coefficients of the linear theory for axis ratios (a along rolling over b across, > 0) of any
+    shape.
 
-    J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990), Table E.3, at its nodes exactly; between them linear in the
-    smaller of a/b and b/a, over Poisson's ratio (0 to 0.5) the parabola through 1/C; asymptotes outside 0.1 to 10.
+    J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990), Table E.3, at its nodes exactly;
+    between them monotone cubics in ln C over ln(a/b), over Poisson's ratio (0 to 0.5) the parabola through 1/C;
+    asymptotes outside 0.1 to 10.
     """
     arrays, shape = broadcast({"a_over_b": a_over_b})
     refuse(arrays, {"a_over_b": POSITIVE})
@@ -101,7 +103,9 @@ class NonElliptic:
     """Outline: half-length along rolling at each, m, shape (k,)."""
 
     def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Pressure (Pa) at points of the contact plane (m, broadcast): semi-elliptical along x, zero outside."""
+        """Pressure (Pa) at points of the contact plane (m, broadcast): semi-elliptical along x, zero
+        outside.
+        """
         x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
         square = np.interp(y, self.y, self.half_length**2, left=0.0, right=0.0)
         inside: Array = np.sqrt(np.maximum(square - x * x, 0.0))
@@ -120,12 +124,14 @@ def non_elliptic(
 ) -> NonElliptic:
     """Patch by the virtual penetration of Kik and Piotrowski, at a normal force (N) or at an approach (m).
 
-    `gap` (m, shape (k,)) is the distance of the undeformed surfaces at the positions `y` (m, shape (k,), rising) across the rolling
-    direction; only differences count. `curvature` is the relative one along the rolling direction (1/m). J. Piotrowski, W. Kik, Vehicle
-    System Dynamics 46 (2008) 27, eqs. 7 and 13, reduction factor 0.55. On an ellipse its area is 7 to 21 %
-    large and its peak pressure 6 to 17 % low (axis ratio 1 to 7), its approach 1 to 3 % short.
+    `gap` (m, shape (k,)) is the distance of the undeformed surfaces at the positions `y` (m, shape (k,),
+    rising) across the rolling direction; only differences count. `curvature` is the relative one along the
+    rolling direction (1/m). J. Piotrowski, W. Kik, Vehicle System Dynamics 46 (2008) 27, eqs. 7 and 13,
+    reduction factor 0.55. On an ellipse its area is 7 to 21 % large and its peak pressure 6 to 17 % low (axis
+    ratio 1 to 7), its approach 1 to 3 % short.
 
-    `InputProblem` for a gap that does not open to both sides, and for a patch that would reach the end of the gap.
+    `InputProblem` for a gap that does not open to both sides, and for a patch that would reach the end of the
+    gap.
     """
     arrays, shape = broadcast({"y": y, "gap": gap})
     if len(shape) != 1:
@@ -133,9 +139,11 @@ def non_elliptic(
     refuse(arrays, {})
     _material(youngs_modulus, poisson)
     flat = [np.ascontiguousarray(array) for array in arrays.values()]
-    options = {"force": force, "approach": approach}
-    figures, outline = call(toml.core().non_elliptic, *flat, curvature, youngs_modulus, poisson, **options)
-    return NonElliptic(**figures, **columns(outline))
+    figures, outline = call(
+        toml.core().non_elliptic, *flat, curvature, youngs_modulus, poisson, force, approach
+    )
+    drawn = columns(outline)
+    return NonElliptic(**figures, y=drawn["y"], half_length=drawn["half_length"])
 
 
 def _material(youngs_modulus: float, poisson: float) -> None:

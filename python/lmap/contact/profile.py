@@ -85,9 +85,10 @@ def read_profile(
 ) -> Profile:
     """A profile from a file, or one that ships, by its name.
 
-    Formats: CSV, MiniProf (`.whl`, `.rail`, `.ban`, `.mpt`), SIMPACK and CONTACT (`.prw`, `.prr`), GENSYS (`.wheel`, `.rail`), VAMPIRE.
-    Side, unit and direction are detected and said in `detected`; every option overrules one of them. `InputProblem` with file and line
-    where it cannot be read, or is plainly of the other kind.
+    Formats: CSV, MiniProf (`.whl`, `.rail`, `.ban`, `.mpt`), SIMPACK and CONTACT (`.prw`, `.prr`), GENSYS
+    (`.wheel`, `.rail`), VAMPIRE. Side, unit and direction are detected and said in `detected`; every option
+    overrules one of them. `InputProblem` with file and line where it cannot be read, or is plainly of the
+    other kind.
     """
     name = str(source)
     path = _find(source)
@@ -127,7 +128,9 @@ def write_profile(
     format: str | None = None,  # noqa: A002
     title: str | None = None,
 ) -> None:
-    """Writes points ([y, z], mm) to a file, whole or not at all; the suffix says the format unless `format` does."""
+    """Writes points ([y, z], mm) to a file, whole or not at all; the suffix says the format unless `format`
+    does.
+    """
     path = Path(path)
     points = profile_of(profile, kind)
     options = {"kind": points.kind, "format": format, "title": title}
@@ -143,7 +146,9 @@ def write_profile(
 
 
 def quality(profile: Profile | ArrayLike, kind: Kind | None = None) -> tuple[Finding, ...]:
-    """What is remarkable about points: kinks, gaps, doubled points, overhangs, crossings; the most serious first."""
+    """What is remarkable about points: kinks, gaps, doubled points, overhangs, crossings; the most serious
+    first.
+    """
     points = profile_of(profile, kind)
     return _findings(
         json.loads(call(toml.core().profile_quality, json.dumps(points.points.tolist()), points.kind))
@@ -151,9 +156,10 @@ def quality(profile: Profile | ArrayLike, kind: Kind | None = None) -> tuple[Fin
 
 
 def smooth(profile: Profile | ArrayLike, kind: Kind | None = None, half_width: float = 1.0) -> Smoothed:
-    """The curve that the contact sees: local cubics by least squares over +-`half_width` mm (0.3 to 10), z once
-    continuously differentiable, curvature continuous.
-    """  # noqa: D205
+    """The curve that the contact sees: local cubics by least squares over +-`half_width` mm (0.3 to 10).
+
+    z is once continuously differentiable, the curvature continuous.
+    """
     points = profile_of(profile, kind)
     if points.kind is None:
         raise InputProblem(Problem(key=("kind",), found="nothing", allowed="wheel, rail"))
@@ -196,7 +202,9 @@ def _find(source: str | Path) -> Path:
 
 
 def _text(path: Path) -> str:
-    """Measuring machines write their notes in any code page: what is no UTF-8 is read as Latin-1, the numbers being ASCII."""
+    """Measuring machines write their notes in any code page: what is no UTF-8 is read as Latin-1, the numbers
+    being ASCII.
+    """
     try:
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -21,7 +22,7 @@ FALLING: Mapping[str, tuple[float, dict[str, Any], dict[str, float]]] = {
     "dry": (0.47, {"kind": "polach", "k_a": 0.6, "k_s": 0.15}, {"ratio": 0.44, "decay": 0.7}),
     "wet": (0.30, {"kind": "polach", "k_a": 0.29, "k_s": 0.09}, {"ratio": 0.38, "decay": 0.1}),
 }
-"""Friction at standstill, law and falling friction of two rail conditions: Spiryagin et al., Proc. IMechE F 227 (2013), Table 4."""
+"""Friction at standstill, law and falling friction: Spiryagin et al., Proc. IMechE F 227 (2013), Table 4."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,17 +99,17 @@ def survey(
     load: float = 1e5,
     speed: float = 22.0 / 3.6,
 ) -> Survey:
-    """Everything about a pair: `load` is the vertical force of a wheel (N), `speed` (m/s) that of the traction curves."""
+    """Everything about a pair: `load` is the vertical force of a wheel (N), `speed` (m/s) that of the traction
+    curves.
+    """
     written = {law: law_of(law, pair.poisson) for law in laws}
     given = {"friction": friction, "load": load, "speed": speed}
     rules = {"friction": POSITIVE, "load": POSITIVE, "speed": POSITIVE}
     refuse({name: np.asarray(value, dtype=np.float64) for name, value in given.items()}, rules)
     play = pair.flange_play()
     reach = float(np.nanmax(np.abs(play))) if np.isfinite(play).any() else 0.008
-    shift = (
-        np.round(np.arange(-np.ceil((reach + 0.0015) * 1e4), np.ceil((reach + 0.0015) * 1e4) + 1.0)) * 1e-4
-    )
-    half = np.arange(-np.ceil(2e3 * (reach + 0.001)), np.ceil(2e3 * (reach + 0.001)) + 1.0) * 0.5e-3
+    shift = _shifts(reach + 0.0015, 1e-4)
+    half = _shifts(reach + 0.001, 5e-4)
     patches = pair.contacts(0.0, load=load)
     right = _main(patches)
     creepage, spin = np.linspace(0.0, 0.02, 161), np.linspace(0.0, 4.0, 81)
@@ -137,6 +138,12 @@ def survey(
             right, traction_creepage, pair, speed, friction, written[laws[0]] if laws else None
         ),
     )
+
+
+def _shifts(reach: float, step: float) -> Array:
+    """Whole multiples of a step to either side, 0 among them exactly."""
+    count = math.ceil(reach / step)
+    return np.arange(-count, count + 1, dtype=np.float64) * step
 
 
 def _main(patches: Contacts) -> Contacts:

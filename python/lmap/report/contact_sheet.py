@@ -46,12 +46,14 @@ def facts(survey: Survey) -> list[tuple[str, str]]:
         for k in range(len(patches)):
             a, b, n = float(patches.a[k]), float(patches.b[k]), float(patches.normal[k])
             spread = float(patches.spread[k])
-            text = f"{1e3 * a:.2f} x {1e3 * b:.2f} mm, {math.pi * a * b * 1e6:.0f} mm2, {1.5e-6 * n / (math.pi * a * b):.0f} MPa"
+            area = math.pi * a * b
+            text = f"{1e3 * a:.2f} x {1e3 * b:.2f} mm, {1e6 * area:.0f} mm2, {1.5e-6 * n / area:.0f} MPa"
             far = ", far from an ellipse" if spread > 0.5 else ""
             rows.append((f"patch, {side} wheel, {n / 1e3:.4g} kN", f"{text} (a x b, Hertz{far})"))
     patch = survey.non_elliptic
     if patch is not None:
-        text = f"{1e6 * patch.area:.0f} mm2, {1e-6 * patch.max_pressure:.0f} MPa, {1e3 * (patch.y[-1] - patch.y[0]):.1f} mm wide"
+        width = 1e3 * (patch.y[-1] - patch.y[0])
+        text = f"{1e6 * patch.area:.0f} mm2, {1e-6 * patch.max_pressure:.0f} MPa, {width:.1f} mm wide"
         rows.append((f"patch, right wheel, {patch.force / 1e3:.4g} kN", f"{text} (Kik and Piotrowski)"))
     rows.append(("rolling radius", f"{1e3 * pair.radius:.6g} mm, gauge {1e3 * pair.gauge:.6g} mm"))
     return rows
@@ -160,8 +162,8 @@ def sheet(survey: Survey, version: str) -> Sheet:
     return Sheet(
         kind="Contact of wheel and rail",
         title=_title(survey),
-        headline=f"Gauge {1e3 * pair.gauge:.6g} mm, wheel radius {1e3 * pair.radius:.6g} mm, {survey.load / 1e3:.4g} kN a wheel, "
-        f"friction {survey.friction:g}.",
+        headline=f"Gauge {1e3 * pair.gauge:.6g} mm, wheel radius {1e3 * pair.radius:.6g} mm, "
+        f"{survey.load / 1e3:.4g} kN a wheel, friction {survey.friction:g}.",
         facts=facts(survey),
         tables=tables,
         figures=[
@@ -237,7 +239,8 @@ def _conicity(survey: Survey) -> tuple[str, str, list[Plot]]:
 def _map(survey: Survey) -> tuple[str, str, list[Plot]]:
     plots = [_map_of(survey, 1.0, "right"), _map_of(survey, -1.0, "left")]
     caption = (
-        "Wheel, lifted, and inclined rail with the points that touch at shifts of the wheelset (rigid contact, both wheels touching). "
+        "Wheel, lifted, and inclined rail with the points that touch at shifts of the wheelset (rigid contact, both "
+        "wheels touching). "
         "Dots on the wheel and on the rail that belong together are joined; a second colour tells the flange."
     )
     return "Contact points", caption, plots
@@ -366,20 +369,33 @@ def _patch(survey: Survey) -> tuple[str, str, list[Plot]]:
         ),
         Plot("across the rail, outward (mm)", "pressure (MPa)", across, choice="pressure in the middle"),
     ]
-    caption = f"Right wheel of the centred wheelset under {n / 1e3:.4g} kN, from the middle of each patch; the second of any patch of any shape, by virtual penetration."
+    caption = (
+        f"Right wheel of the centred wheelset under {n / 1e3:.4g} kN, each about the place where it is deepest; "
+        "Kik and Piotrowski's has no given shape."
+    )
     return "Patch", caption, plots
 
 
 def _creep(survey: Survey) -> tuple[str, str, list[Plot]]:
     xi = 100.0 * survey.creepage
-    top = (0.0, 1.25 * survey.friction)
+    drawn = (
+        ("longitudinal", "longitudinal creepage (%)", "-Fx / N (1)", xi),
+        ("lateral", "lateral creepage (%)", "-Fy / N (1)", xi),
+        ("spin", "spin (1/m)", "-Fy / N (1)", survey.spin),
+    )
     plots = [
-        Plot("longitudinal creepage (%)", "-Fx / N (1)", [Line(c.law, xi, c.longitudinal, str(k + 1)) for k, c in enumerate(survey.curves)], choice="longitudinal", y_range=top),
-        Plot("lateral creepage (%)", "-Fy / N (1)", [Line(c.law, xi, c.lateral, str(k + 1)) for k, c in enumerate(survey.curves)], choice="lateral", y_range=top),
-        Plot("spin (1/m)", "-Fy / N (1)", [Line(c.law, survey.spin, c.spin, str(k + 1)) for k, c in enumerate(survey.curves)], choice="spin", y_range=top),
-    ]  # fmt: skip
+        Plot(
+            x_title,
+            y_title,
+            [Line(c.law, x, getattr(c, name), str(k + 1)) for k, c in enumerate(survey.curves)],
+            choice=name,
+            y_range=(0.0, 1.25 * survey.friction),
+        )
+        for name, x_title, y_title, x in drawn
+    ]
     caption = (
-        f"Force on the wheel against the creepage, in the patch of the right wheel, friction {survey.friction:g} at any slip velocity. "
+        "Force on the wheel against the creepage, in the patch of the right wheel, friction "
+        f"{survey.friction:g} at any slip velocity. "
         "A law without limit leaves the picture; Vermeulen and Johnson's knows no spin."
     )
     return "Creep curves", caption, plots
@@ -391,8 +407,8 @@ def _traction(survey: Survey) -> tuple[str, str, list[Plot]]:
         Line(name, creepage, values, str(k + 1)) for k, (name, values) in enumerate(survey.traction.items())
     ]
     caption = (
-        f"Longitudinal creepage alone at {3.6 * survey.speed:.4g} km/h, same patch. Dry and wet: friction, reduction factors and falling "
-        "friction of Spiryagin et al. (2013), Table 4."
+        f"Longitudinal creepage alone at {3.6 * survey.speed:.4g} km/h, same patch. Dry and wet: friction, reduction "
+        "factors and falling friction of Spiryagin et al. (2013), Table 4."
     )
     return "Traction curve", caption, [Plot("longitudinal creepage (%)", "-Fx / N (1)", lines)]
 
