@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -43,11 +44,22 @@ def contact(
     Example: lmap contact s1002 uic60 --inclination 1:40 --law fastsim --law polach --out out/
     """
     from lmap.check import report_folder, version
+    from lmap.contact.laws import law_of
     from lmap.contact.pair import Pair
     from lmap.contact.survey import survey
     from lmap.report import contact_sheet
 
     folder = None if out is None else report_folder(out, option="--out")
+    lengths = {
+        "--gauge": gauge,
+        "--gauge-depth": gauge_depth,
+        "--flange-back": flange_back,
+        "--radius": radius,
+    }
+    _positive({name: (value, "mm") for name, value in lengths.items()})
+    _positive({"--friction": (friction, ""), "--load": (load, "kN"), "--speed": (speed, "km/h")})
+    for name in law or ():
+        law_of(name)
     pair = Pair(
         wheel,
         rail,
@@ -77,6 +89,19 @@ def contact(
         files.write(page, render(contact_sheet.sheet(found, version())))
         if not as_json:
             print(f"figures: {page}", file=sys.stderr)
+
+
+def _positive(given: dict[str, tuple[float, str]]) -> None:
+    """Refuses options that are no numbers above zero, all at once, in the unit in which they were typed."""
+    from lmap.errors import InputProblem, Problem
+
+    problems = [
+        Problem(key=(option,), found=f"{value:g} {unit}".strip(), allowed=f"a number > 0, {unit}".strip(", "))
+        for option, (value, unit) in given.items()
+        if not (math.isfinite(value) and value > 0.0)
+    ]
+    if problems:
+        raise InputProblem(problems)
 
 
 def _slope(text: str) -> float:

@@ -28,6 +28,13 @@ LAWS = {
 SHEAR_MODULUS = 82e9
 """Of steel, Pa."""
 
+PUBLISHED: dict[str, dict[str, float]] = {
+    "modified_fastsim": {"k0": 0.54, "alpha": 0.02, "beta": 0.62},
+}
+"""Parameters of a law that has no defaults, where its name alone is given: modified FASTSIM as fitted to a locomotive by
+Spiryagin, Polach and Cole, Vehicle System Dynamics 51 (2013) 1739.
+"""
+
 _WITH_POISSON = ("fastrip", "vermeulen_johnson")
 
 
@@ -101,7 +108,7 @@ def creep_forces(
 
 def law_of(law: str | Mapping[str, Any], poisson: float = POISSON_RATIO) -> dict[str, Any]:
     """A law as a case writes it; an `InputProblem` with the nearest name for an unknown one."""
-    written: dict[str, Any] = {"kind": law} if isinstance(law, str) else dict(law)
+    written: dict[str, Any] = {"kind": law, **PUBLISHED.get(law, {})} if isinstance(law, str) else dict(law)
     kind = written.get("kind")
     if not isinstance(kind, str) or kind not in LAWS:
         found = "no kind" if kind is None else f'"{kind}"'

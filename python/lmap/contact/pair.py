@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 from dataclasses import dataclass, fields
 from typing import Any, Literal
@@ -229,8 +228,10 @@ class Pair:
         return Contacts(**columns(frame, (part.name for part in fields(Contacts))))
 
     def flange_play(self) -> tuple[float, float]:
-        """Shifts (m) at which the left and the right flange come to bear: the first is negative, the second
-        positive; level axle.
+        """Shifts (m) at which the left and the right flange come to bear: the first negative, the second positive.
+
+        The first contact of that wheel, rigid and with the axle rolling until both wheels touch, is none of its tread
+        from there on (contact angle 0.35 rad and more). NaN where there is no such place within 20 mm.
         """
         return -self._bears(-1.0), self._bears(1.0)
 
@@ -260,25 +261,16 @@ class Pair:
         )
 
     def _bears(self, direction: float) -> float:
-        for low, high in itertools.pairwise(np.arange(0.0, _FAR, 2.5e-4).tolist()):
-            if self._on_flange(direction * high, direction):
-                return self._between(low, high, direction)
-        return float("nan")
-
-    def _between(self, low: float, high: float, direction: float) -> float:
-        """Where the flange comes to bear, to a tenth of a micrometre."""
+        low, high = 0.0, _FAR
         while high - low > 1e-7:
-            middle = 0.5 * (low + high)
-            if self._on_flange(direction * middle, direction):
-                high = middle
-            else:
-                low = middle
+            shifts = np.linspace(low, high, 41)
+            found = self.contacts(direction * shifts)
+            first = found.where((found.side == direction) & (found.rank == 0.0) & (found.part != TREAD))
+            if not len(first):
+                return float("nan")
+            at = int(np.argmin(np.abs(shifts - float(np.abs(first.y).min()))))
+            low, high = float(shifts[max(at - 1, 0)]), float(shifts[at])
         return high
-
-    def _on_flange(self, y: float, side: float) -> bool:
-        found = self.contacts(y, roll="level")
-        first = found.part[(found.side == side) & (found.rank == 0)]
-        return len(first) == 0 or bool(first[0] != TREAD)
 
     def _stands(self) -> None:
         """Refuses a gauge between which, or on which, the centred wheelset does not stand on its treads."""

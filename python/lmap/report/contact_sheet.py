@@ -187,17 +187,21 @@ def _title(survey: Survey) -> str:
 
 def _radius_difference(survey: Survey) -> tuple[str, str, list[Plot]]:
     y = 1e3 * survey.shift
-    plot = Plot(
-        x_title="lateral shift y (mm)",
-        y_title="rolling radius difference (mm)",
-        lines=[
-            Line("axle level, as EN 15302's curves", y, 1e3 * survey.level, "1"),
-            Line("axle rolls until both wheels touch", y, 1e3 * survey.free, "2", dash="dash"),
-            *_play_lines(survey, 1e3 * np.concatenate([survey.level, survey.free])),
-        ],
-    )
+    both = 1e3 * np.concatenate([survey.level, survey.free])
+    lines = [
+        Line("axle level, as EN 15302's curves", y, 1e3 * survey.level, "1"),
+        Line("axle rolls until both wheels touch", y, 1e3 * survey.free, "2", dash="dash"),
+        *_play_lines(survey, both),
+    ]
+    titles = ("lateral shift y (mm)", "rolling radius difference (mm)")
+    plots = [Plot(*titles, lines, choice="with the flanges")]
+    play = float(np.nanmin(np.abs(survey.flange_play))) if np.isfinite(survey.flange_play).any() else math.inf
+    on_tread = both[np.tile(np.abs(survey.shift) < 0.95 * play, 2)]
+    if math.isfinite(play) and np.isfinite(on_tread).any():
+        top = 1.1 * float(np.nanmax(np.abs(on_tread))) or 1.0
+        plots.insert(0, Plot(*titles, lines, choice="on the treads", y_range=(-top, top)))
     caption = "Rolling radius of the right wheel less that of the left. Dotted: the flanges bear."
-    return "Rolling radius difference", caption, [plot]
+    return "Rolling radius difference", caption, plots
 
 
 def _play_lines(survey: Survey, values: Any) -> list[Line]:
