@@ -104,7 +104,8 @@ pub struct Patch {
     /// Centre of the patch: positions and angle averaged over the stretch with the interpenetration left of
     /// [`VIRTUAL`] times the approach as weight, as the force of its strips is distributed.
     pub centre: Touch,
-    /// The same averages over all of the interpenetration: where CONTACT puts its contact reference point.
+    /// The same averages over the whole interpenetration, weighted with its volume (depth^1.5 per strip): where CONTACT puts its
+    /// contact reference point.
     pub marker: Touch,
     /// From the deepest point along the contact plane to where the virtual interpenetration ends, m: inward (negative), outward.
     pub reach: [f64; 2],
@@ -524,8 +525,8 @@ impl Side {
             });
         };
         let approach = -deepest.gap;
-        let mean = self.averaged(&points[from..to], &deepest, VIRTUAL * approach);
-        let marker = self.averaged(&points[from..to], &deepest, approach).centre;
+        let mean = self.averaged(&points[from..to], &deepest, VIRTUAL * approach, 1.0);
+        let marker = self.averaged(&points[from..to], &deepest, approach, 1.5).centre;
         let k_yy = mean.curvature + deepest.k_xy * deepest.k_xy / deepest.k_xx;
         let (modulus, poisson) = (
             hertz::effective_modulus(self.placement.youngs_modulus, self.placement.poisson),
@@ -555,7 +556,7 @@ impl Side {
     }
 
     /// Means over a stretch with the virtual interpenetration as weight, and the curvature of the parabola that has the same area of it.
-    fn averaged(&self, points: &[Outline], deepest: &Touch, depth: f64) -> Mean {
+    fn averaged(&self, points: &[Outline], deepest: &Touch, depth: f64, power: f64) -> Mean {
         let lost = -deepest.gap - depth;
         let (sin, cos) = deepest.angle.sin_cos();
         let along = |p: &Outline| (p.y - deepest.rail[0]) * cos - (p.z - deepest.rail[1]) * sin;
@@ -576,7 +577,7 @@ impl Side {
             let mix = |a: f64, b: f64| a + t * (b - a);
             let ends = [along(p) + t0 * (along(q) - along(p)), along(p) + t1 * (along(q) - along(p))];
             reach = [reach[0].min(ends[0]), reach[1].max(ends[1])];
-            let w = mix(wp, wq).max(0.0) * (ends[1] - ends[0]).abs();
+            let w = mix(wp, wq).max(0.0).powf(power) * (ends[1] - ends[0]).abs();
             area += w;
             let y = mix(p.y, q.y);
             let (a, b) = (&stations[p.station], &stations[q.station]);
