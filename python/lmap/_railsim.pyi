@@ -158,7 +158,7 @@ def read_profile(text: str, name: str, options_json: str = "{}") -> str:
     """
 
 def inspect_profile(text: str, name: str, options_json: str = "{}") -> str:
-    """`read_profile` with all that was found out: also `kind` (wheel, rail or null), `detected`, `findings`, `smoothing`.
+    """`read_profile` with all that was found out: `kind` (wheel, rail or null), `detected`, `findings`, `smoothing`.
 
     `detected` has `format`, `kind`, `unit` (m), `mirrored_y`, `mirrored_z`, each with `value` and `because`, then
     `reversed` and `notes`. `findings` are as of `profile_quality`.
