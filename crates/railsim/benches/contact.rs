@@ -2,7 +2,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use railsim::KeyPath;
-use railsim::contact::creep::{CreepLaw, Creepage, Patch};
+use railsim::contact::creep::{
+    CreepLaw, Creepage, Fastrip, KalkerLinear, ModifiedFastsim, Patch, Polach, ShenHedrickElkins,
+    VermeulenJohnson,
+};
 use railsim::contact::geometry_table::{ContactPoint, GeometryTable, Placement};
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use std::hint::black_box;
@@ -25,6 +28,20 @@ fn contact(criterion: &mut Criterion) {
         ("fastsim 10x10, partial slip", Creepage { xi: 4e-4, eta: 3e-4, phi: 0.1 }),
         ("fastsim 10x10, full slip", Creepage { xi: 2e-2, eta: 1e-2, phi: 0.5 }),
     ] {
+        group.bench_function(name, |b| b.iter(|| law.force(black_box(&patch), black_box(&creepage), 0.4)));
+    }
+    for (name, law) in [
+        ("polach", CreepLaw::Polach(Polach { k_a: 0.6, k_s: 0.15 })),
+        ("kalker linear", CreepLaw::KalkerLinear(KalkerLinear {})),
+        ("shen-hedrick-elkins", CreepLaw::ShenHedrickElkins(ShenHedrickElkins {})),
+        ("vermeulen-johnson", CreepLaw::VermeulenJohnson(VermeulenJohnson::default())),
+        (
+            "modified fastsim 10x10",
+            CreepLaw::ModifiedFastsim(ModifiedFastsim { k0: 0.54, alpha: 0.02, beta: 0.62, nx: 10, ny: 10 }),
+        ),
+        ("fastrip 20x20", CreepLaw::Fastrip(Fastrip::default())),
+    ] {
+        let creepage = Creepage { xi: 2e-3, eta: 1e-3, phi: 0.2 };
         group.bench_function(name, |b| b.iter(|| law.force(black_box(&patch), black_box(&creepage), 0.4)));
     }
     let (wheel, rail) = (shipped("anzr1_worn_2", ProfileKind::Wheel), shipped("as60", ProfileKind::Rail));

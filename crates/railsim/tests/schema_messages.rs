@@ -169,8 +169,8 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "template = \"axle\"\nat = [\"$axle.x\"",
         "template = \"axel\"\nat = [\"$axle.x\"",
-        "33: vehicle.use[0].template: found \"axel\"; allowed: the name of a [template]: axle (did \
-         you mean axle?)",
+        "33: vehicle.use[0].template: found \"axel\"; allowed: the name of a [template]: axle (did you \
+             mean axle?)",
     ),
     (
         "with = { axle = \"ws1\" }",
@@ -323,7 +323,11 @@ fn case() -> Value {
 fn cases() -> Vec<(&'static str, Value, &'static str)> {
     vec![
         ("/run/speed", json!(0), "run.speed: found 0; allowed: a number > 0 m/s"),
-        ("/run/friction", json!(1.6), "run.friction: found 1.6; allowed: a number > 0 and <= 1.5"),
+        (
+            "/run/friction",
+            json!(1.6),
+            "run.friction: found 1.6; allowed: a number > 0 and <= 1.5, or a table",
+        ),
         (
             "/run/output_step",
             json!(0.0001),
@@ -433,8 +437,9 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/creep",
             json!({ "kind": "fastism" }),
-            "run.creep.kind: found \"fastism\"; allowed: \"fastsim\", \"kalker_linear\", \"polach\" (did \
-         you mean fastsim?)",
+            "run.creep.kind: found \"fastism\"; allowed: \"fastrip\", \"fastsim\", \"kalker_linear\", \
+             \"modified_fastsim\", \"polach\", \"shen_hedrick_elkins\", \"vermeulen_johnson\" (did you \
+             mean fastsim?)",
         ),
         (
             "/run/spede",

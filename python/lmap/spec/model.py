@@ -81,6 +81,16 @@ def _names(value: Any) -> list[str]:
     return names
 
 
+def _friction(value: Any) -> Any:
+    """A table is the core's to check."""
+    if value is None or isinstance(value, dict):
+        return value
+    return _NUMBER.validate_python(value)
+
+
+_NUMBER: TypeAdapter[float] = TypeAdapter(Annotated[float, Field(ge=0.0, allow_inf_nan=False, strict=True)])
+
+
 class RunPart(BaseModel):
     """`[run]`: what procedures expand; the rest is the core's and kept as it is."""
 
@@ -93,7 +103,8 @@ class RunPart(BaseModel):
     wheel_profile: Annotated[
         list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
     ] = None
-    friction: float | None = Field(default=None, ge=0.0, allow_inf_nan=False, strict=True)
+    friction: Annotated[float | dict[str, Any] | None, BeforeValidator(_friction)] = None
+    """A number, or a table (per rail, along the track, falling with the slip velocity), which the core checks."""
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:

@@ -39,6 +39,20 @@ pub struct Bushing {
     pub rotational_damping: Option<[f64; 3]>,
 }
 
+/// Wrench of the translational terms: on B about A's centre of mass, in A's axes. Without a branch, so that several go side by side
+/// ([`super::lanes`]).
+#[inline(always)]
+pub(super) fn translational(stiffness: &Vec3, damping: &Vec3, motion: &Relative, mount: &Mount) -> Wrench {
+    let s = Bushing::stretch(motion, mount);
+    let half = |d: &Vec3, rate: &Vec3| {
+        0.5 * (mount.preload - stiffness.component_mul(d) - damping.component_mul(rate))
+    };
+    let f_A = half(&s.d_A, &s.rate_A); // written in A's axes, acts at B's point
+    let f_B = motion.R_AB * half(&s.d_B, &s.rate_B); // written in B's axes, acts at A's point
+    let f = f_A + f_B;
+    Wrench { f, m: mount.p_A.cross(&f) + s.d_A.cross(&f_A) }
+}
+
 #[inline]
 fn scale(k: &[f64; 3], d: &Vec3) -> Vec3 {
     Vec3::new(k[0] * d.x, k[1] * d.y, k[2] * d.z)
@@ -78,7 +92,7 @@ impl Bushing {
         ]
     }
 
-    #[inline]
+    #[inline(always)]
     fn stretch(motion: &Relative, mount: &Mount) -> Stretch {
         let q_B = motion.R_AB * mount.p_B;
         let d_A = motion.r_AB + q_B - mount.p_A;
@@ -92,14 +106,7 @@ impl Bushing {
 impl ForceLaw for Bushing {
     #[inline]
     fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
-        let s = Self::stretch(motion, mount);
-        let half = |d: &Vec3, rate: &Vec3| {
-            0.5 * (mount.preload - scale(&self.stiffness, d) - scale(&self.damping, rate))
-        };
-        let f_A = half(&s.d_A, &s.rate_A); // written in A's axes, acts at B's point
-        let f_B = motion.R_AB * half(&s.d_B, &s.rate_B); // written in B's axes, acts at A's point
-        let f = f_A + f_B;
-        let mut wrench = Wrench { f, m: mount.p_A.cross(&f) + s.d_A.cross(&f_A) };
+        let mut wrench = translational(&Vec3::from(self.stiffness), &Vec3::from(self.damping), motion, mount);
         if let Some(k) = &self.rotational_stiffness {
             wrench.m -= scale(k, &turned(motion));
         }

@@ -5,6 +5,7 @@
 //! [`Law`] and one file for each kind.
 
 mod bushing;
+pub mod lanes;
 mod point_damper;
 mod point_spring;
 

@@ -116,7 +116,7 @@ pub fn wheel_pose(
 }
 
 /// One contact, placed in the track frame.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct PlacedContact {
     /// Contact point from the wheelset's centre of mass, track axes, m.
     pub lever: Vec3,

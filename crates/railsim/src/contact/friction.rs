@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// Largest coefficient that is taken for one.
 const LARGEST: f64 = 1.5;
 
-/// Friction that falls with the slip velocity w: mu(w) = mu0 ((1 - A) exp(-B w) + A) (O. Polach, Wear 258 (2005) 992, eq. 5).
+/// Friction that falls with the slip velocity w: mu(w) = mu0 ((1 - A) exp(-B w) + A) (O. Polach, Wear 258 (2005) 992).
 ///
 /// w is the magnitude of the sliding velocity at the middle of the contact, spin left out. Typical: dry A 0.40 and B 0.60 s/m, wet A 0.40 and B 0.20 s/m
 /// (the same source).
@@ -201,9 +201,9 @@ struct Piece {
 
 impl Piece {
     #[inline]
-    fn mu(&self, side: usize, w: f64) -> f64 {
+    fn mu(&self, side: usize, slip: [f64; 2]) -> f64 {
         let mu = self.mu[side];
-        self.falling.map_or(mu, |falling| mu * falling.factor(w))
+        self.falling.map_or(mu, |falling| mu * falling.factor((slip[0] * slip[0] + slip[1] * slip[1]).sqrt()))
     }
 }
 
@@ -240,23 +240,26 @@ impl FrictionField {
         Self { first, along: Vec::new() }
     }
 
-    /// Coefficient on the left (`side` 0) or right (1) rail at `s` m along the track where the surfaces slide at `w` m/s.
+    /// Coefficient on the left (`side` 0) or right (1) rail at `s` m along the track where the surfaces slide with the velocity `slip`,
+    /// forward and lateral in the contact plane, m/s.
     #[inline]
     #[must_use]
-    pub fn at(&self, side: usize, s: f64, w: f64) -> f64 {
-        if self.along.is_empty() { self.first.mu(side, w) } else { self.searched(side, s, w) }
+    pub fn at(&self, side: usize, s: f64, slip: [f64; 2]) -> f64 {
+        if self.along.is_empty() { self.first.mu(side, slip) } else { self.searched(side, s, slip) }
     }
 
-    fn searched(&self, side: usize, s: f64, w: f64) -> f64 {
+    fn searched(&self, side: usize, s: f64, slip: [f64; 2]) -> f64 {
         let passed = self.along.partition_point(|piece| piece.from <= s);
-        let Some(here) = passed.checked_sub(1).map(|i| &self.along[i]) else { return self.first.mu(side, w) };
+        let Some(here) = passed.checked_sub(1).map(|i| &self.along[i]) else {
+            return self.first.mu(side, slip);
+        };
         let gone = s - here.from;
         if gone >= here.transition {
-            return here.mu(side, w);
+            return here.mu(side, slip);
         }
         let before = if passed > 1 { &self.along[passed - 2] } else { &self.first };
         let t = gone / here.transition;
-        (1.0 - t) * before.mu(side, w) + t * here.mu(side, w)
+        (1.0 - t) * before.mu(side, slip) + t * here.mu(side, slip)
     }
 }
 
@@ -274,8 +277,8 @@ mod tests {
     #[test]
     fn number_is_everywhere() {
         let field = FrictionField::new(&written("0.4"));
-        assert_eq!(field.at(0, -5.0, 0.0), 0.4);
-        assert_eq!(field.at(1, 1e6, 12.0), 0.4);
+        assert_eq!(field.at(0, -5.0, [0.0; 2]), 0.4);
+        assert_eq!(field.at(1, 1e6, [12.0, -3.0]), 0.4);
     }
 
     #[test]
@@ -293,7 +296,7 @@ mod tests {
             (0, 150.0, 9.0, 0.1),
             (1, 1e5, 9.0, 0.4),
         ] {
-            assert!((field.at(side, s, w) - mu).abs() < 1e-15, "side {side} s {s} w {w}");
+            assert!((field.at(side, s, [-0.6 * w, 0.8 * w]) - mu).abs() < 1e-15, "side {side} s {s} w {w}");
         }
     }
 

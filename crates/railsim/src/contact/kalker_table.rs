@@ -2,7 +2,7 @@
 //!
 //! Constants: J. J. Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), Table E.3, for Poisson's ratio
 //! 0, 0.25, 0.5 and a/b or b/a = 0.1 .. 1; C33 as in the table of his thesis of 1967. Between the three Poisson's ratios:
-//! the parabola through 1/C. Between rows: monotone cubics in ln C over ln(a/b) (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5
+//! the parabola through 1/C; for C33 with a > b, which falls nearly in proportion to nu, through C. Between rows: monotone cubics in ln C over ln(a/b) (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5
 //! (1984) 300, eq. 5), because the coefficients go as powers of a/b at both ends: a straight line in a/b would miss C23 and C33 by
 //! 10 to 15 % between 0.1 and 0.2. Outside 0.1 <= a/b <= 10 Kalker's asymptotes are used (same table), scaled by a constant that
 //! makes them meet the table at the edge: the bare asymptotes step there by up to some 7 %.
@@ -57,16 +57,21 @@ const LONG: [Row; 10] = [
     [[3.40, 4.12, 5.20], [3.40, 3.67, 3.98], [1.33, 1.47, 1.63], [1.21, 1.19, 1.16]],
 ];
 
-/// Parabola through (0, 1/C0), (0.25, 1/C25), (0.5, 1/C50), inverted.
-fn over_poisson(c: &[f64; 3], nu: f64) -> f64 {
+/// Parabola through the values at nu = 0, 0.25, 0.5.
+fn parabola(c: [f64; 3], nu: f64) -> f64 {
     let l0 = (nu - 0.25) * (nu - 0.5) / 0.125;
     let l1 = -nu * (nu - 0.5) / 0.0625;
     let l2 = nu * (nu - 0.25) / 0.125;
-    1.0 / (l0 / c[0] + l1 / c[1] + l2 / c[2])
+    l0 * c[0] + l1 * c[1] + l2 * c[2]
 }
 
-fn row(row: &Row, nu: f64) -> [f64; 4] {
-    row.each_ref().map(|c| over_poisson(c, nu))
+/// The row at Poisson's ratio nu; `long` where a > b.
+fn row(row: &Row, nu: f64, long: bool) -> [f64; 4] {
+    let mut all = row.map(|c| 1.0 / parabola(c.map(|c| 1.0 / c), nu));
+    if long {
+        all[3] = parabola(row[3], nu);
+    }
+    all
 }
 
 /// Row `i` of 0 .. 18: a/b = 0.1 .. 1, then b/a = 0.9 .. 0.1.
@@ -107,7 +112,7 @@ fn inside(u: f64, nu: f64) -> [f64; 4] {
     for i in 0..count {
         let (at, values) = node(first + i);
         x[i] = at;
-        y[i] = row(values, nu).map(f64::ln);
+        y[i] = row(values, nu, first + i >= NARROW.len()).map(f64::ln);
     }
     let j = k - first;
     let h = |i: usize| x[i + 1] - x[i];
@@ -169,7 +174,7 @@ pub fn coefficients(a_over_b: f64, nu: f64) -> Coefficients {
         let narrow = a_over_b < 1.0;
         let (g, edge) = if narrow { (a_over_b, &NARROW[0]) } else { (1.0 / a_over_b, &LONG[0]) };
         let asymptote = if narrow { asymptote_narrow } else { asymptote_long };
-        let (at_g, at_edge, edge) = (asymptote(g, nu), asymptote(0.1, nu), row(edge, nu));
+        let (at_g, at_edge, edge) = (asymptote(g, nu), asymptote(0.1, nu), row(edge, nu, !narrow));
         [0, 1, 2, 3].map(|i| edge[i] * at_g[i] / at_edge[i])
     };
     Coefficients { c11: c[0], c22: c[1], c23: c[2], c33: c[3] }
@@ -202,7 +207,7 @@ mod tests {
             [(asymptote_narrow as fn(f64, f64) -> [f64; 4], &NARROW, "a<b"), (asymptote_long, &LONG, "a>b")]
         {
             for nu in [0.25, 0.28, 0.3] {
-                let (bare, tabled) = (asymptote(0.1, nu), row(&table[0], nu));
+                let (bare, tabled) = (asymptote(0.1, nu), row(&table[0], nu, name == "a>b"));
                 let step: Vec<f64> = bare.iter().zip(tabled).map(|(b, t)| b / t - 1.0).collect();
                 println!("{name} nu {nu}: asymptote/table - 1 at 0.1: {step:.3?}");
                 assert!(step.iter().all(|s| s.abs() < 0.08));

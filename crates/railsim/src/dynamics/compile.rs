@@ -3,6 +3,7 @@
 
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{Law, Mount};
+use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::{GeometryTable, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
@@ -135,7 +136,7 @@ fn contact(case: &Case) -> Result<Contact> {
         law: case.run.creep.with_poisson(settings.poisson),
         shear_modulus: settings.youngs_modulus / (2.0 * (1.0 + settings.poisson)),
         dissipation: if wheel_load > 0.0 { settings.damping / wheel_load } else { 0.0 },
-        friction: case.run.friction,
+        friction: FrictionField::new(&case.run.friction),
     })
 }
 

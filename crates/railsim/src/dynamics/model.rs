@@ -1,10 +1,9 @@
 //! The compiled model: immutable, shared between threads.
 
-use std::ops::Range;
-
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{Law, Mount};
 use crate::contact::creep::CreepLaw;
+use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
@@ -78,7 +77,7 @@ pub enum Contact {
         /// Hunt-Crossley dissipation factor, s/m.
         dissipation: f64,
         /// Coefficient of friction.
-        friction: f64,
+        friction: FrictionField,
     },
     /// Constant coefficients, for closed forms.
     Textbook(Textbook),
@@ -108,8 +107,6 @@ pub struct Model {
     /// m/s2.
     pub gravity: f64,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
-    /// Runs of links between the same two bodies.
-    pub(crate) joints: Vec<Range<usize>>,
 }
 
 impl Model {
@@ -131,13 +128,6 @@ impl Model {
         gravity: f64,
     ) -> Result<Self> {
         links.sort_by_key(|l| (l.a, l.b));
-        let mut joints: Vec<Range<usize>> = Vec::new();
-        for (i, link) in links.iter().enumerate() {
-            match joints.last_mut() {
-                Some(run) if (links[run.start].a, links[run.start].b) == (link.a, link.b) => run.end = i + 1,
-                _ => joints.push(i..i + 1),
-            }
-        }
         let map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len() };
         let stiff_blocks = (0..wheelsets.len())
             .map(|w| {
@@ -157,7 +147,6 @@ impl Model {
             contact,
             gravity,
             stiff_blocks,
-            joints,
         })
     }
 

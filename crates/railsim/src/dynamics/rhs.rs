@@ -1,13 +1,14 @@
 //! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
 
 use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, wheelset};
-use crate::connection::{ForceLaw, Pair, Relative};
-use crate::contact::creep::{Creepage, Patch};
+use crate::connection::lanes::BushingBlock;
+use crate::connection::{ForceLaw, Law, Pair, Pose, Relative};
+use crate::contact::creep::{CreepCase, Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
 use crate::contact::geometry_table::ContactPoint;
 use crate::contact::normal::hunt_crossley;
 use crate::contact::textbook::Textbook;
-use crate::dynamics::model::{Contact, Model};
+use crate::dynamics::model::{Contact, Link, Model};
 use crate::dynamics::scratch::{ContactForce, LeftRail, Scratch, Wheel};
 use crate::dynamics::state::StateMap;
 use crate::dynamics::stiff;
@@ -52,6 +53,48 @@ pub struct VehicleSystem<'m> {
     pub creeping: bool,
     map: StateMap,
     level: bool,
+    joints: Joints,
+}
+
+/// Connections as a run evaluates them: everything between the same two bodies sees one relative motion, bushings go side by
+/// side.
+#[derive(Debug)]
+struct Joints {
+    /// Bodies A and B of each joint.
+    pairs: Vec<(usize, usize)>,
+    motions: Vec<Relative>,
+    /// What its connections add up to, on B about A's centre of mass, in A's axes.
+    sums: Vec<Wrench>,
+    blocks: Vec<BushingBlock>,
+    /// Joint and link of every connection that is in no block.
+    single: Vec<(usize, usize)>,
+}
+
+impl Joints {
+    fn new(links: &[Link]) -> Self {
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        let (mut blocks, mut single) = (vec![BushingBlock::empty()], Vec::new());
+        for (i, link) in links.iter().enumerate() {
+            let pair = (link.a, link.b);
+            let joint = pairs.iter().position(|p| *p == pair).unwrap_or_else(|| {
+                pairs.push(pair);
+                pairs.len() - 1
+            });
+            if blocks.last().is_some_and(BushingBlock::is_full) {
+                blocks.push(BushingBlock::empty());
+            }
+            let in_block = match (&link.law, blocks.last_mut()) {
+                (Law::Bushing(bushing), Some(block)) => block.add(joint, bushing, &link.mount),
+                _ => false,
+            };
+            if !in_block {
+                single.push((joint, i));
+            }
+        }
+        let still = Relative::between(&Pose::at(Vec3::zeros()), &Pose::at(Vec3::zeros()));
+        let (motions, sums) = (vec![still; pairs.len()], vec![Wrench::zero(); pairs.len()]);
+        Self { pairs, motions, sums, blocks, single }
+    }
 }
 
 impl<'m> VehicleSystem<'m> {
@@ -66,6 +109,7 @@ impl<'m> VehicleSystem<'m> {
             creeping: true,
             map: model.map(),
             level: model.layout.is_tangent(),
+            joints: Joints::new(&model.links),
         }
     }
 
@@ -83,68 +127,110 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    /// Contacts of every wheel, then the creep forces of all of them in one go, then what they add up to.
     fn contact_stage(&mut self, x: &[f64]) {
-        let first = self.model.bodies.len();
-        let scratch = &mut self.scratch;
+        self.scratch.creep_cases.clear();
         for w in 0..self.model.wheelsets.len() {
-            let q = &x[self.map.q(first + w)];
-            let k = &scratch.kinematics[first + w];
-            let deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
-            scratch.deviation[w] = deviation;
-            let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
-            let axle = Axle {
-                model: self.model,
-                set: &self.model.wheelsets[w],
-                creeping: self.creeping,
-                q,
-                k,
-                w_T: k.R_TB * k.w_B,
-                speed: k.v_T.x.abs().max(LEAST_ROLLING_SPEED),
-                track: TrackMotion { y: tq[0], z: tq[1], phi: tq[2], vy: tu[0], vz: tu[1], vphi: tu[2] },
-                deviation,
-            };
-            let mut force = Vec3::zeros();
-            let mut moment = Vec3::zeros();
-            let mut load = [0.0; 3];
-            for (side, sigma) in [-1.0, 1.0].into_iter().enumerate() {
-                let wheel = &mut scratch.wheels[w][side];
-                if let Err(out) = axle.wheel(sigma, wheel) {
-                    scratch.left_rail =
-                        Some(LeftRail { wheelset: w, side: sigma, shift: out.shift, roll: out.roll });
-                }
-                for contact in wheel.contacts() {
-                    let f = total_force(contact);
-                    force += f;
-                    moment += contact.placed.lever.cross(&f);
-                    let [y, z] = contact.placed.point;
-                    load[0] -= f.y;
-                    load[1] -= f.z;
-                    load[2] -= y * f.z - z * f.y;
-                }
-            }
-            scratch.wrench[first + w].f += k.frame.R_IT * force;
-            scratch.wheel_moment[w] = k.R_TB.tr_mul(&moment);
-            scratch.track_load[w] = load;
+            self.place_wheels(w, x);
+        }
+        self.creep_stage();
+        for w in 0..self.model.wheelsets.len() {
+            self.add_wheel_forces(w);
         }
     }
 
-    fn connection_stage(&mut self) {
-        let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
-        for joint in &self.model.joints {
-            let links = &self.model.links[joint.clone()];
-            let (a, b) = (links[0].a, links[0].b);
-            let motion = Relative::between(&kinematics[a].pose, &kinematics[b].pose);
-            let mut sum = Wrench::zero();
-            for link in links {
-                let one = link.law.wrench(&motion, &link.mount);
-                sum.f += one.f;
-                sum.m += one.m;
+    fn place_wheels(&mut self, w: usize, x: &[f64]) {
+        let at = self.model.bodies.len() + w;
+        let scratch = &mut self.scratch;
+        let q = &x[self.map.q(at)];
+        let k = &scratch.kinematics[at];
+        let deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+        scratch.deviation[w] = deviation;
+        let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
+        let axle = Axle {
+            model: self.model,
+            set: &self.model.wheelsets[w],
+            creeping: self.creeping,
+            q,
+            k,
+            w_T: k.R_TB * k.w_B,
+            speed: k.v_T.x.abs().max(LEAST_ROLLING_SPEED),
+            track: TrackMotion { y: tq[0], z: tq[1], phi: tq[2], vy: tu[0], vz: tu[1], vphi: tu[2] },
+            deviation,
+        };
+        for (side, sigma) in [-1.0, 1.0].into_iter().enumerate() {
+            let wheel = &mut scratch.wheels[w][side];
+            if let Err(out) = axle.wheel(sigma, wheel, &mut scratch.creep_cases) {
+                scratch.left_rail =
+                    Some(LeftRail { wheelset: w, side: sigma, shift: out.shift, roll: out.roll });
             }
-            let pair = Pair::new(&sum, &motion, &kinematics[a].pose.R);
-            wrench[a].f += pair.on_A.f;
-            wrench[a].m += pair.on_A.m;
-            wrench[b].f += pair.on_B.f;
-            wrench[b].m += pair.on_B.m;
+        }
+    }
+
+    fn creep_stage(&mut self) {
+        let Contact::Profiles { law, .. } = &self.model.contact else { return };
+        let scratch = &mut self.scratch;
+        let forces = &mut scratch.creep_forces[..scratch.creep_cases.len()];
+        law.forces(&scratch.creep_cases, forces);
+        // A contact that was asked about is one with a normal force: the same order, the same choice.
+        let mut answers = forces.iter();
+        let wheels = scratch.wheels.iter_mut().flatten();
+        for contact in wheels.flat_map(Wheel::contacts_mut).filter(|c| c.creeps) {
+            if let Some(force) = answers.next() {
+                contact.creep = [force.fx, force.fy];
+            }
+        }
+    }
+
+    fn add_wheel_forces(&mut self, w: usize) {
+        let at = self.model.bodies.len() + w;
+        let scratch = &mut self.scratch;
+        let k = &scratch.kinematics[at];
+        let mut force = Vec3::zeros();
+        let mut moment = Vec3::zeros();
+        let mut load = [0.0; 3];
+        for (wheel, sigma) in scratch.wheels[w].iter_mut().zip([-1.0, 1.0]) {
+            let mut on_wheel = Vec3::zeros();
+            for contact in wheel.contacts() {
+                let f = total_force(contact);
+                on_wheel += f;
+                moment += contact.placed.lever.cross(&f);
+                let [y, z] = contact.placed.point;
+                load[2] -= y * f.z - z * f.y;
+            }
+            wheel.Q = -on_wheel.z;
+            wheel.Y = -sigma * on_wheel.y;
+            force += on_wheel;
+        }
+        load[0] = -force.y;
+        load[1] = -force.z;
+        scratch.wrench[at].f += k.frame.R_IT * force;
+        scratch.wheel_moment[w] = k.R_TB.tr_mul(&moment);
+        scratch.track_load[w] = load;
+    }
+
+    fn connection_stage(&mut self) {
+        let Joints { pairs, motions, sums, blocks, single } = &mut self.joints;
+        let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
+        for ((motion, sum), (a, b)) in motions.iter_mut().zip(sums.iter_mut()).zip(&*pairs) {
+            *motion = Relative::between(&kinematics[*a].pose, &kinematics[*b].pose);
+            *sum = Wrench::zero();
+        }
+        for block in &*blocks {
+            block.apply(motions, sums);
+        }
+        for (joint, link) in &*single {
+            let link = &self.model.links[*link];
+            let one = link.law.wrench(&motions[*joint], &link.mount);
+            sums[*joint].f += one.f;
+            sums[*joint].m += one.m;
+        }
+        for ((motion, sum), (a, b)) in motions.iter().zip(&*sums).zip(&*pairs) {
+            let pair = Pair::new(sum, motion, &kinematics[*a].pose.R);
+            wrench[*a].f += pair.on_A.f;
+            wrench[*a].m += pair.on_A.m;
+            wrench[*b].f += pair.on_B.f;
+            wrench[*b].m += pair.on_B.m;
         }
     }
 
@@ -207,13 +293,13 @@ struct Axle<'a> {
 }
 
 impl Axle<'_> {
-    /// One wheel: place it on its rail, look its contacts up, give each its normal and creep force. Gives back the pose
-    /// with which the wheel left the table.
+    /// One wheel: place it on its rail, look its contacts up, give each its normal force and ask for its creep force. Gives
+    /// back the pose with which the wheel left the table.
     #[inline]
-    fn wheel(&self, sigma: f64, wheel: &mut Wheel) -> Result<(), WheelPose> {
+    fn wheel(&self, sigma: f64, wheel: &mut Wheel, cases: &mut Vec<CreepCase>) -> Result<(), WheelPose> {
+        let (half, radius) = (self.set.tape_half_distance, self.set.radius);
         match &self.model.contact {
-            Contact::Profiles { table, law, shear_modulus, dissipation, friction } => {
-                let (half, radius) = (self.set.tape_half_distance, self.set.radius);
+            Contact::Profiles { table, shear_modulus, dissipation, friction, .. } => {
                 let rail_y = table.rail_origin_y();
                 let rail = rail_pose(sigma, rail_y, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
@@ -223,42 +309,33 @@ impl Axle<'_> {
                     .contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found)
                     .map_err(|_| pose)?;
                 for point in &found[..count] {
-                    let placed = place(
-                        sigma,
-                        point,
-                        &rail,
-                        radius,
-                        self.q,
-                        self.k,
-                        &self.w_T,
-                        &self.track,
-                        self.speed,
-                    );
+                    let contact = wheel.add();
+                    let (q, k) = (self.q, self.k);
+                    let placed = place(sigma, point, &rail, radius, q, k, &self.w_T, &self.track, self.speed);
                     let n =
                         hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
-                    let normal = point.share * n.force;
-                    let mut contact = ContactForce {
-                        geometry: Some(*point),
-                        placed,
-                        normal,
-                        normal_slope: [point.share * n.stiffness, point.share * n.damping],
-                        creep: [0.0; 2],
-                    };
-                    if self.creeping && normal > 0.0 && *friction > 0.0 {
-                        let f = law.force(&patch(point, normal, *shear_modulus), &placed.creepage, *friction);
-                        contact.creep = [f.fx, f.fy];
+                    contact.geometry = Some(*point);
+                    contact.normal = point.share * n.force;
+                    contact.normal_slope = [point.share * n.stiffness, point.share * n.damping];
+                    contact.creep = [0.0; 2];
+                    let mu = friction.at(usize::from(sigma > 0.0), q[0], placed.slip);
+                    contact.creeps = self.creeping && contact.normal > 0.0 && mu > 0.0;
+                    if contact.creeps {
+                        cases.push(CreepCase {
+                            patch: patch(point, contact.normal, *shear_modulus),
+                            creepage: placed.creepage,
+                            mu,
+                        });
                     }
-                    wheel.add(contact, &total_force(&contact), sigma);
+                    contact.placed = placed;
                 }
             }
             Contact::Textbook(book) => {
-                let (half, radius) = (self.set.tape_half_distance, self.set.radius);
                 let rail = rail_pose(sigma, half, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, 0.0, &rail);
                 wheel.lift(pose.shift);
                 if pose.depth > 0.0 {
-                    let contact = self.textbook(book, sigma, &pose, rail.surface_velocity[1]);
-                    wheel.add(contact, &total_force(&contact), sigma);
+                    *wheel.add() = self.textbook(book, sigma, &pose, rail.surface_velocity[1]);
                 }
             }
         }
@@ -295,6 +372,7 @@ impl Axle<'_> {
             normal,
             normal_slope: [book.stiffness, book.damping],
             creep: [-book.f11 * creepage.xi, -book.f22 * creepage.eta - book.f23 * creepage.phi],
+            creeps: false,
         }
     }
 }

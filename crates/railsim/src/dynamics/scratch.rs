@@ -1,6 +1,7 @@
 //! Buffers of the right-hand side, each with its one writer.
 
 use crate::body::{Kinematics, Wrench};
+use crate::contact::creep::{CreepCase, CreepForce};
 use crate::contact::creepage::PlacedContact;
 use crate::contact::geometry_table::ContactPoint;
 use crate::dynamics::model::Model;
@@ -8,7 +9,7 @@ use crate::math::Vec3;
 use crate::track::Deviation;
 
 /// One contact with its forces. Written by the contact stage.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ContactForce {
     /// Geometry from the table; `None` for textbook contact.
     pub geometry: Option<ContactPoint>,
@@ -20,12 +21,14 @@ pub struct ContactForce {
     pub normal_slope: [f64; 2],
     /// Creep force on the wheel, forward and along the outward tangent, N.
     pub creep: [f64; 2],
+    /// Whether the creep-force law is asked: a contact under load on a rail with friction, of a vehicle that rolls.
+    pub creeps: bool,
 }
 
 /// One wheel on its rail. Written by the contact stage.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wheel {
-    slots: [Option<ContactForce>; 2],
+    slots: [ContactForce; 2],
     count: usize,
     /// Outward lateral shift of the wheel on its rail, m.
     pub shift: f64,
@@ -37,8 +40,13 @@ pub struct Wheel {
 
 impl Wheel {
     /// The contacts, tread before flange.
-    pub fn contacts(&self) -> impl Iterator<Item = &ContactForce> {
-        self.slots[..self.count].iter().flatten()
+    #[must_use]
+    pub fn contacts(&self) -> &[ContactForce] {
+        &self.slots[..self.count]
+    }
+
+    pub(crate) fn contacts_mut(&mut self) -> &mut [ContactForce] {
+        &mut self.slots[..self.count]
     }
 
     /// Off the rail, until contacts are added.
@@ -49,13 +57,11 @@ impl Wheel {
         self.Y = 0.0;
     }
 
-    /// Adds a contact whose force on the wheel is `force` (track axes), on side `sigma`.
+    /// The next contact, to be filled in place.
     #[inline]
-    pub(crate) fn add(&mut self, contact: ContactForce, force: &Vec3, sigma: f64) {
-        self.Q -= force.z;
-        self.Y -= sigma * force.y;
-        self.slots[self.count] = Some(contact);
+    pub(crate) fn add(&mut self) -> &mut ContactForce {
         self.count += 1;
+        &mut self.slots[self.count - 1]
     }
 }
 
@@ -89,6 +95,9 @@ pub struct Scratch {
     pub deviation: Vec<Deviation>,
     /// Set by the contact stage, cleared by whoever reads it.
     pub left_rail: Option<LeftRail>,
+    /// What the creep-force law is asked in one go, and its answers: every contact under load, in the order of the wheels.
+    pub(crate) creep_cases: Vec<CreepCase>,
+    pub(crate) creep_forces: Vec<CreepForce>,
 }
 
 impl Scratch {
@@ -104,6 +113,8 @@ impl Scratch {
             wheels: vec![[Wheel::default(); 2]; ws],
             deviation: vec![Deviation::default(); ws],
             left_rail: None,
+            creep_cases: Vec::with_capacity(4 * ws),
+            creep_forces: vec![CreepForce::default(); 4 * ws],
         }
     }
 }

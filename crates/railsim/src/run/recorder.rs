@@ -96,9 +96,9 @@ fn ratio(wheel: &Wheel) -> f64 {
 fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {
     use WheelQuantity as W;
     let zone = |z: Zone| {
-        wheel.contacts().filter(|c| c.geometry.is_some_and(|g| g.zone == z)).map(|c| c.normal).sum()
+        wheel.contacts().iter().filter(|c| c.geometry.is_some_and(|g| g.zone == z)).map(|c| c.normal).sum()
     };
-    let main = wheel.contacts().max_by(|a, b| a.normal.total_cmp(&b.normal));
+    let main = wheel.contacts().iter().max_by(|a, b| a.normal.total_cmp(&b.normal));
     let creepage = main.map_or(Creepage { xi: 0.0, eta: 0.0, phi: 0.0 }, |c| c.placed.creepage);
     match quantity {
         W::Q => wheel.Q,

@@ -109,6 +109,24 @@ pub fn faults(p: &Patch, c: &Creepage, mu: f64, at: &KeyPath) -> Vec<Fault> {
     .collect()
 }
 
+/// What a law is asked: one patch, its creepage and its coefficient of friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CreepCase {
+    /// The patch under load.
+    pub patch: Patch,
+    /// Its creepage.
+    pub creepage: Creepage,
+    /// Coefficient of friction.
+    pub mu: f64,
+}
+
+impl CreepCase {
+    /// Load, extent and friction, without which there is no force.
+    fn carries(&self) -> bool {
+        self.patch.n > 0.0 && self.patch.a > 0.0 && self.patch.b > 0.0 && self.mu > 0.0
+    }
+}
+
 /// A creep-force law, as written in a case: `creep = { kind = "fastsim", nx = 10, ny = 10 }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -138,23 +156,37 @@ impl Default for CreepLaw {
 impl CreepLaw {
     /// Force on the wheel for one patch, creepage and coefficient of friction.
     ///
-    /// No load or no extent (n, a or b not positive) gives no force. Any finite input gives a finite force: where the arithmetic of a law
+    /// No load, no extent or no friction (n, a, b or mu not positive) gives no force. Any finite input gives a finite force: where the arithmetic of a law
     /// overflows (creepages beyond some 1e100), the patch slides as a whole. Does not allocate.
     #[must_use]
     pub fn force(&self, patch: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
-        if !(patch.n > 0.0 && patch.a > 0.0 && patch.b > 0.0) {
-            return CreepForce::default();
+        let mut force = [CreepForce::default()];
+        self.forces(&[CreepCase { patch: *patch, creepage: *creepage, mu }], &mut force);
+        force[0]
+    }
+
+    /// Forces of several patches, the same to the bit as one by one: `forces[i]` for `cases[i]`. Does not allocate.
+    ///
+    /// # Panics
+    /// Where the two differ in length.
+    pub fn forces(&self, cases: &[CreepCase], forces: &mut [CreepForce]) {
+        assert_eq!(cases.len(), forces.len(), "one force per case");
+        match self {
+            Self::Fastrip(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
+            Self::Fastsim(law) => law.forces(cases, forces),
+            Self::KalkerLinear(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage)),
+            Self::ModifiedFastsim(law) => law.forces(cases, forces),
+            Self::Polach(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
+            Self::ShenHedrickElkins(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
+            Self::VermeulenJohnson(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
         }
-        let force = match self {
-            Self::Fastrip(law) => law.force(patch, creepage, mu),
-            Self::Fastsim(law) => law.force(patch, creepage, mu),
-            Self::KalkerLinear(law) => law.force(patch, creepage),
-            Self::ModifiedFastsim(law) => law.force(patch, creepage, mu),
-            Self::Polach(law) => law.force(patch, creepage, mu),
-            Self::ShenHedrickElkins(law) => law.force(patch, creepage, mu),
-            Self::VermeulenJohnson(law) => law.force(patch, creepage, mu),
-        };
-        if force.fx.is_finite() && force.fy.is_finite() { force } else { sliding(patch, creepage, mu) }
+        for (force, case) in forces.iter_mut().zip(cases) {
+            if !case.carries() {
+                *force = CreepForce::default();
+            } else if !(force.fx.is_finite() && force.fy.is_finite()) {
+                *force = sliding(&case.patch, &case.creepage, case.mu);
+            }
+        }
     }
 
     /// Spin moment about the normal on the wheel, N m, of the laws that give one; `c33` is Kalker's.
@@ -163,10 +195,10 @@ impl CreepLaw {
     /// no slope in common with C33 (the method's error, stated in the documentation). Dear: not for the right-hand side.
     #[must_use]
     pub fn spin_moment(&self, patch: &Patch, c33: f64, creepage: &Creepage, mu: f64) -> Option<f64> {
-        let loaded = patch.n > 0.0 && patch.a > 0.0 && patch.b > 0.0;
+        let case = CreepCase { patch: *patch, creepage: *creepage, mu };
         let moment = match self {
             Self::Polach(_) | Self::ShenHedrickElkins(_) | Self::VermeulenJohnson(_) => return None,
-            _ if !loaded => 0.0,
+            _ if !case.carries() => 0.0,
             Self::Fastrip(law) => law.spin_moment(patch, creepage, mu),
             Self::Fastsim(law) => strip::moment(law.nx, law.ny, patch, creepage, mu),
             Self::KalkerLinear(law) => law.spin_moment(patch, c33, creepage),
@@ -242,4 +274,11 @@ fn sliding(patch: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
     let (x, y) = (creepage.xi / largest, creepage.eta / largest);
     let scale = -limit / x.hypot(y);
     if scale.is_finite() { CreepForce { fx: scale * x, fy: scale * y } } else { CreepForce::default() }
+}
+
+#[inline]
+fn each(cases: &[CreepCase], forces: &mut [CreepForce], law: impl Fn(&CreepCase) -> CreepForce) {
+    for (force, case) in forces.iter_mut().zip(cases) {
+        *force = law(case);
+    }
 }

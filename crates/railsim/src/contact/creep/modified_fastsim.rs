@@ -1,6 +1,6 @@
 //! FASTSIM with a slope that falls with creepage.
 
-use super::{CreepForce, Creepage, Fastsim, Patch, strip};
+use super::{CreepCase, CreepForce, Creepage, Fastsim, Patch, strip};
 use crate::error::{Fault, KeyPath};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,9 @@ pub struct ModifiedFastsim {
     pub ny: u16,
 }
 
+/// Cases that go into one march: enough to fill its lanes, on the stack.
+const TOGETHER: usize = 16;
+
 fn ten() -> u16 {
     10
 }
@@ -39,6 +42,9 @@ fn ten() -> u16 {
 impl ModifiedFastsim {
     /// The patch as the plain march sees it: Kalker's coefficients times k.
     fn softened(&self, p: &Patch, creepage: &Creepage, mu: f64) -> Patch {
+        if mu * p.n <= 0.0 {
+            return *p;
+        }
         let slip = (p.c11 * creepage.xi).hypot(p.c22 * creepage.eta);
         let eps = 0.25 * p.shear_modulus * PI * p.a * p.b * self.k0 * slip / (mu * p.n);
         let k = self.k0 * (self.alpha + (1.0 - self.alpha) / (1.0 + self.beta * eps));
@@ -52,18 +58,29 @@ impl ModifiedFastsim {
     /// Force on the wheel.
     #[must_use]
     pub fn force(&self, p: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
-        if mu * p.n <= 0.0 {
-            return CreepForce::default();
+        let mut force = [CreepForce::default()];
+        self.forces(&[CreepCase { patch: *p, creepage: *creepage, mu }], &mut force);
+        force[0]
+    }
+
+    /// Forces on the wheel of several patches: cheaper than one by one, and the same to the bit.
+    ///
+    /// # Panics
+    /// Where `cases` and `forces` differ in length.
+    pub fn forces(&self, cases: &[CreepCase], forces: &mut [CreepForce]) {
+        assert_eq!(cases.len(), forces.len(), "one force per case");
+        for (cases, forces) in cases.chunks(TOGETHER).zip(forces.chunks_mut(TOGETHER)) {
+            let mut soft = [cases[0]; TOGETHER];
+            for (soft, case) in soft.iter_mut().zip(cases) {
+                *soft = CreepCase { patch: self.softened(&case.patch, &case.creepage, case.mu), ..*case };
+            }
+            self.plain().forces(&soft[..cases.len()], forces);
         }
-        self.plain().force(&self.softened(p, creepage, mu), creepage, mu)
     }
 
     /// Spin moment on the wheel, N m.
     #[must_use]
     pub fn spin_moment(&self, p: &Patch, creepage: &Creepage, mu: f64) -> f64 {
-        if mu * p.n <= 0.0 {
-            return 0.0;
-        }
         strip::moment(self.nx, self.ny, &self.softened(p, creepage, mu), creepage, mu)
     }
 

@@ -13,19 +13,37 @@ pub(super) struct Strips {
     rate: [f64; 3],
     /// mu p_z at the centre of the patch, Pa.
     bound: f64,
+    /// Hertz's pressure for p_z, an ellipsoid; otherwise Kalker's paraboloid.
+    hertz: bool,
 }
 
 impl Strips {
-    /// Flexibilities from Kalker's coefficients (as in [`super::Fastsim`]); parabolic bound under the normal force `n`.
-    pub(super) fn new(p: &Patch, c: &Creepage, mu: f64, n: f64) -> Self {
-        let g = p.shear_modulus;
-        let (l1, l2) = (3.0 * g * p.c11 / (8.0 * p.a), 3.0 * g * p.c22 / (8.0 * p.a));
-        let l3 = 4.0 * g * p.c23 / (PI * p.a * (p.a / p.b).sqrt());
+    /// As [`super::Fastsim`]: three flexibilities, parabolic bound.
+    pub(super) fn three_flexibilities(p: &Patch, c: &Creepage, mu: f64) -> Self {
+        let [l1, l2, l3] = flexibilities(p);
         Self {
             a: p.a,
             b: p.b,
-            rate: [c.xi * l1, c.eta * l2, c.phi * l3],
-            bound: 2.0 * mu * n / (PI * p.a * p.b),
+            rate: [c.xi / l1, c.eta / l2, c.phi / l3],
+            bound: 2.0 * mu * p.n / (PI * p.a * p.b),
+            hertz: false,
+        }
+    }
+
+    /// One flexibility for all creepages, their mean weighted by them (Kalker 1990), so that where everything slides the
+    /// stress opposes the slip; Hertz's pressure under the normal force `n` for a bound.
+    pub(super) fn one_flexibility(p: &Patch, creepage: &Creepage, mu: f64, n: f64) -> Self {
+        let [l1, l2, l3] = flexibilities(p);
+        let c = (p.a * p.b).sqrt();
+        let (xi, eta, phi) = (creepage.xi.abs(), creepage.eta.abs(), c * creepage.phi.abs());
+        let weight = (xi * l1 + eta * l2 + phi * l3) / (xi * xi + eta * eta + phi * phi).sqrt();
+        let stiffness = if weight > 0.0 { 1.0 / weight } else { 0.0 };
+        Self {
+            a: p.a,
+            b: p.b,
+            rate: [creepage.xi, creepage.eta, creepage.phi].map(|c| c * stiffness),
+            bound: 1.5 * mu * n / (PI * p.a * p.b),
+            hertz: true,
         }
     }
 
@@ -45,7 +63,8 @@ impl Strips {
             let (h, middle) = (half * (before - x), 0.5 * half * (before + x));
             q[0] -= h * across;
             q[1] -= h * (ry + spin * middle);
-            let limit = self.bound * square * (1.0 - x * x);
+            let shape = square * (1.0 - x * x);
+            let limit = self.bound * if self.hertz { shape.max(0.0).sqrt() } else { shape };
             let size = q[0].hypot(q[1]);
             if size > limit {
                 q = q.map(|q| q * (limit / size));
@@ -56,10 +75,17 @@ impl Strips {
     }
 }
 
+/// L1, L2, L3 from Kalker's coefficients, m/Pa (L3 per metre of the patch).
+fn flexibilities(p: &Patch) -> [f64; 3] {
+    let g = p.shear_modulus;
+    let translation = 8.0 * p.a / (3.0 * g);
+    [translation / p.c11, translation / p.c22, PI * p.a * (p.a / p.b).sqrt() / (4.0 * g * p.c23)]
+}
+
 /// Spin moment of FASTSIM's stresses about the normal through the centre of the patch, N m: sum of x p_y - y p_x over `ny` strips,
 /// spaced in the angle, of `nx` elements.
 pub(super) fn moment(nx: u16, ny: u16, p: &Patch, creepage: &Creepage, mu: f64) -> f64 {
-    let strips = Strips::new(p, creepage, mu, p.n);
+    let strips = Strips::three_flexibilities(p, creepage, mu);
     let mut sum = 0.0;
     for j in 0..ny {
         let (relative, width) = spaced(j, ny);
