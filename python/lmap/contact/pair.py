@@ -154,13 +154,20 @@ class Pair:
             ("radius", "left.radius", "gauge", "flange_back_distance", "smoothing"), POSITIVE
         )
         refuse(arrays, {**positive, "youngs_modulus": POSITIVE, "poisson": POISSON})
-        sides = {"left": (_profile(other.get("wheel", self.wheel), "wheel"), _profile(other.get("rail", self.rail), "rail"))}
+        sides = {
+            "left": (
+                _profile(other.get("wheel", self.wheel), "wheel"),
+                _profile(other.get("rail", self.rail), "rail"),
+            )
+        }
         radii = {"left": other.get("radius", radius), "right": radius}
         if other:
             sides["right"] = (self.wheel, self.rail)
         self._mirrored = not other
         self._profiles = {
-            (side, kind): profile for side, pair in sides.items() for kind, profile in zip(("wheel", "rail"), pair, strict=True)
+            (side, kind): profile
+            for side, pair in sides.items()
+            for kind, profile in zip(("wheel", "rail"), pair, strict=True)
         }
         written = {
             side: {"wheel": wheel.points.tolist(), "rail": rail.points.tolist(), "radius": radii[side]}
@@ -179,9 +186,7 @@ class Pair:
         """
         arrays, shape = broadcast({"y": y})
         refuse(arrays, {})
-        found = self._call(
-            toml.core().rolling_radius_difference, arrays["y"].ravel().tolist(), _free(roll)
-        )
+        found = self._call(toml.core().rolling_radius_difference, arrays["y"].ravel().tolist(), _free(roll))
         return _numbers(found, shape)
 
     def conicity(self, amplitude: ArrayLike, *, method: str = "integration", roll: Roll = "level") -> Array:
@@ -270,7 +275,9 @@ class Pair:
             raise InputProblem([self._placed(problem) for problem in error.problems]) from None
 
     def _placed(self, problem: Problem) -> Problem:
-        profile = self._profiles.get((str(problem.key[0]), str(problem.key[1]))) if len(problem.key) > 1 else None
+        profile = (
+            self._profiles.get((str(problem.key[0]), str(problem.key[1]))) if len(problem.key) > 1 else None
+        )
         if profile is None:
             return problem
         if profile.path is None:
@@ -283,7 +290,9 @@ class Pair:
         _, high = self._bracket(direction, 0.0, high + 5e-4, "free", 1e-6)
         return high
 
-    def _bracket(self, direction: float, low: float, high: float, roll: Roll, width: float) -> tuple[float, float]:
+    def _bracket(
+        self, direction: float, low: float, high: float, roll: Roll, width: float
+    ) -> tuple[float, float]:
         """Shifts around the first flange contact of a side, as close as asked; NaN where there is none."""
         while high - low > width:
             shifts = np.linspace(low, high, 21)
