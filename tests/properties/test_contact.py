@@ -35,6 +35,7 @@ def contacts(draw: st.DrawFn, spin: bool = True) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("law", contact.LAWS)
+@settings(deadline=None)
 @given(given=contacts())
 def test_no_creepage_no_force(law: str, given: dict[str, Any]) -> None:
     forces = contact.creep_forces(law, **{**given, "xi": 0.0, "eta": 0.0, "phi": 0.0})
@@ -42,6 +43,7 @@ def test_no_creepage_no_force(law: str, given: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("law", LIMITED)
+@settings(deadline=None)
 @given(given=contacts())
 def test_friction_is_the_bound(law: str, given: dict[str, Any]) -> None:
     forces = contact.creep_forces(law, **given)
@@ -52,6 +54,7 @@ def test_friction_is_the_bound(law: str, given: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("law", contact.LAWS)
+@settings(deadline=None)
 @given(given=contacts())
 def test_mirrored_creepage_gives_the_mirrored_force(law: str, given: dict[str, Any]) -> None:
     one = contact.creep_forces(law, **given)
@@ -62,11 +65,13 @@ def test_mirrored_creepage_gives_the_mirrored_force(law: str, given: dict[str, A
 
 
 @pytest.mark.parametrize("law", contact.LAWS)
+@settings(deadline=None)
 @given(given=contacts(spin=False))
 def test_force_opposes_sliding(law: str, given: dict[str, Any]) -> None:
     forces = contact.creep_forces(law, **given)
     power = float(forces.fx) * given["xi"] + float(forces.fy) * given["eta"]
-    assert power <= 0.0
+    # at creepages of 1e-100 the forces are rounding errors of sums that vanish
+    assert power <= 1e-12 * given["mu"] * given["n"] * np.hypot(given["xi"], given["eta"])
 
 
 @given(
@@ -80,7 +85,7 @@ def test_hertz_grows_with_the_load(n: float, more: float, k_x: float, k_y: float
     assert all(float(one) < float(other) for one, other in zip(small, large, strict=True))
 
 
-@settings(max_examples=30)
+@settings(max_examples=30, deadline=None)
 @given(y=st.floats(-0.006, 0.006), step=st.floats(1e-7, 1e-6))
 def test_contact_on_the_tread_moves_continuously(y: float, step: float) -> None:
     """A cone on a head of R300: no jump, and 20 um at most for a micrometre."""

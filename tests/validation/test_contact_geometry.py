@@ -83,24 +83,31 @@ def test_en_15302_conicity_from_the_profiles(case: str, fetched: Path, compare: 
 
 @pytest.mark.parametrize("case", ["E1", "E2", "E3", "E4"])
 def test_en_15302_conicity_at_every_amplitude(case: str, fetched: Path, compare: Compare) -> None:
-    """The worst of all amplitudes from 1 mm on, in parts of the standard's tolerance there."""
+    """The amplitude (1 mm and more) at which we are nearest to a limit of annex F, those that allow for the amplitude too.
+
+    Where the standard prints 0 there is no oscillation of that amplitude: ours has no number there.
+    """
+    names = ("amplitude_mm", "tan_gamma_e", "limit_low_2", "limit_up_2")
     given = [
-        (float(row["amplitude_mm"]), float(row["tan_gamma_e"]))
+        [float(row[name]) for name in names]
         for row in rows(fetched / "en15302_equivalent_conicity.csv")
         if row["case"] == case
     ]
-    amplitude, theirs = np.array(given).T
+    amplitude, theirs, low, high = np.array(given).T
     ours = pair(fetched, case).conicity(1e-3 * amplitude)
-    tolerance = np.minimum(0.05, 0.5 * theirs)
-    worst = int(np.nanargmax(np.abs(ours - theirs) / tolerance))
+    assert (np.isnan(ours) == (theirs == 0.0)).all()
+    ours = np.nan_to_num(ours)
+    allowed = np.where(ours >= theirs, high - theirs, theirs - low)
+    used = np.where(theirs == 0.0, 0.0, np.abs(ours - theirs) / np.maximum(allowed, 1e-9))
+    worst = int(np.argmax(used))
     compare(
-        f"{case}: conicity at {amplitude[worst]:.1f} mm, the worst amplitude",
+        f"{case}: conicity at {amplitude[worst]:.1f} mm, nearest to its limit",
         float(ours[worst]),
         float(theirs[worst]),
-        float(tolerance[worst]),
+        float(allowed[worst]),
         "EN 15302, annexes E and F",
     )
-    assert np.isfinite(ours).all()
+    assert used.max() <= 1.0
 
 
 @pytest.mark.parametrize(("side", "letter"), [(-1.0, "L"), (1.0, "R")])
@@ -116,7 +123,6 @@ def test_manchester_a22_position_and_angle(side: float, letter: str, compare: Co
         found = bench.contacts(1e-3 * float(row["y_ws_mm"]), yaw=float(row["yaw_rad"]), load=1e4)
         found = found.where(found.side == side)
         place, angle = side * float(row["ycp_wheel_mm"]), -side * float(row["delta_cp_rad"])
-        place = place if letter == "R" else place
         at = int(np.argmin(np.abs(found.angle - angle)))
         near = abs(1e3 * float(found.y_wheel[at]) - place), abs(float(found.angle[at]) - angle)
         good += near[0] <= 0.3 and near[1] <= 0.01
