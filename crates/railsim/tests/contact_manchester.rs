@@ -224,40 +224,41 @@ fn by_table(table: &GeometryTable, row: &Row) -> Ours {
     }
 }
 
-/// The surfaces at CONTACT's own pose: its approach, position and angle are geometry alone, and ours are the same.
+/// At CONTACT's own pose (its height to a nanometre) the interpenetration of the surfaces is its approach, and Hertz under that approach carries its load: geometry
+/// and normal problem apart from everything else. Where the patch is no ellipse, `spread` says so.
 #[test]
-fn pose_alone_gives_the_approach() {
+fn approach_and_load_at_the_pose_of_contact() {
     let (wheel, rail) = profiles();
     let side = Side::new(&wheel, &rail, &PLACEMENT).unwrap();
-    let mut worst = [0.0_f64; 3];
+    let (mut worst, mut worst_ahead) = (0.0_f64, 0.0_f64);
     for row in rows() {
         let patches = side.patches(&row.pose, &RailShift::default()).unwrap();
         let deepest = patches.iter().max_by(|a, b| b.deepest.gap.total_cmp(&a.deepest.gap)).unwrap();
+        let deepest = patches.iter().find(|p| p.deepest.gap < 0.0 && p.normal >= deepest.normal).unwrap();
         let approach = -deepest.deepest.gap;
-        let error = [
-            (approach - row.approach) * 1e6,
-            (side.rail_origin_y() + deepest.marker.rail[0] - row.y) * 1e3,
-            (deepest.marker.ahead - row.ahead) * 1e3,
-        ];
+        let load = patches.iter().map(|p| p.normal).sum::<f64>();
         println!(
-            "{}: approach {:6.3} um ({:6.3}), marker y {:7.3} mm ({:7.3}), x {:6.3} mm ({:6.3}), patches {}, spread {:.2}, N(approach) {:.0} N ({:.0})",
+            "{}: approach {:6.3} um ({:6.3})  N {:6.0} ({:6.0}) {:5.1} %  x {:6.3} mm ({:6.3})  patches {} spread {:.2} {}",
             row.name,
             1e6 * approach,
             1e6 * row.approach,
-            1e3 * (side.rail_origin_y() + deepest.marker.rail[0]),
-            1e3 * row.y,
-            1e3 * deepest.marker.ahead,
+            load,
+            row.normal,
+            100.0 * (load / row.normal - 1.0),
+            1e3 * deepest.centre.ahead,
             1e3 * row.ahead,
             patches.len(),
             deepest.spread,
-            deepest.normal,
-            row.normal
+            if deepest.is_hertzian() { "" } else { "no ellipse" }
         );
-        for (w, e) in worst.iter_mut().zip(error) {
-            *w = w.max(e.abs());
+        worst = worst.max((approach - row.approach).abs());
+        worst_ahead = worst_ahead.max((deepest.centre.ahead - row.ahead).abs());
+        if deepest.is_hertzian() && patches.len() == 1 {
+            assert!((load / row.normal - 1.0).abs() < 0.015, "{}", row.name);
         }
     }
-    println!("largest difference: approach {:.3} um, y {:.3} mm, x {:.3} mm", worst[0], worst[1], worst[2]);
+    println!("largest difference: approach {:.3} um, x {:.3} mm", 1e6 * worst, 1e3 * worst_ahead);
+    assert!(worst < 0.5e-6 && worst_ahead < 0.1e-3);
 }
 
 fn judge(name: &str, ours: impl Fn(&Row) -> Ours) -> [usize; 4] {
@@ -306,16 +307,27 @@ fn judge(name: &str, ours: impl Fn(&Row) -> Ours) -> [usize; 4] {
     within
 }
 
+/// Rows outside, and why.
+///
+/// - y = 0 and R 0.5 (place): the head's R300 and R80 meet within the patch, which is no ellipse (spread 0.46 and 0.69): its centre lies between the
+///   parts, 0.5 to 0.8 mm from CONTACT's.
+/// - R 5.0 (place): tread and flange carry together; CONTACT gives one patch 12.2 mm long with one point and one angle, we two. Compared is
+///   their mean by load.
+/// - R 7.0 and 7.5 (normal force, 1.00 %): flange contact in full slip. FASTSIM's three flexibilities turn its force up to 3.5 degrees
+///   from the direction of sliding in a slender patch (a/b = 16 to 20), so more of the load hangs on friction.
 #[test]
 fn direct_search_under_load() {
     let (wheel, rail) = profiles();
     let side = Side::new(&wheel, &rail, &PLACEMENT).unwrap();
-    judge("direct search", |row| by_search(&side, row));
+    let within = judge("direct search", |row| by_search(&side, row));
+    assert!(within[0] >= 20 && within[1] >= 18 && within[2] == 21 && within[3] >= 19);
 }
 
+/// The table averages at one interpenetration, 0.55 times CONTACT's approach here (12 um, 10 kN).
 #[test]
 fn table_under_load() {
     let (wheel, rail) = profiles();
     let table = GeometryTable::build_at(&wheel, &rail, &PLACEMENT, 12e-6).unwrap();
-    judge("table", |row| by_table(&table, row));
+    let within = judge("table", |row| by_table(&table, row));
+    assert!(within[0] >= 20 && within[1] >= 18 && within[2] == 21 && within[3] >= 19);
 }

@@ -85,7 +85,7 @@ impl Kinematics {
 ///
 /// `spins` is true for a wheelset, whose axes carry yaw and roll but not its spin; `level` where the track frame is known
 /// to be inertial axes moved along x, which saves the turning.
-#[inline]
+#[inline(always)]
 pub(crate) fn kinematics(
     q: &[f64],
     u: &[f64],

@@ -41,7 +41,7 @@ impl Wrench {
     }
 
     /// Adds a force `f` acting at `lever` from the centre of mass.
-    #[inline]
+    #[inline(always)]
     pub fn add_force(&mut self, f: &Vec3, lever: &Vec3) {
         self.f += f;
         self.m += lever.cross(f);
@@ -63,7 +63,7 @@ pub struct Relative {
 
 impl Relative {
     /// Of two bodies.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn between(a: &Pose, b: &Pose) -> Self {
         let apart = b.r - a.r;

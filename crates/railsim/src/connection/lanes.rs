@@ -1,8 +1,7 @@
 //! Bushings side by side: the same law as [`Bushing`], several at once in vector lanes.
 //!
 //! Bushings are most of a vehicle's connections and their law has no branch. A block holds [`LANES`] of them, between whatever
-//! bodies, in arrays that the compiler puts into vector registers: four lanes where the processor has AVX2 (found at run time),
-//! else two. The paths do the same operations in the same order, so the bytes do not depend on the processor.
+//! bodies, in arrays that the compiler puts into vector registers, four lanes to a register where the right-hand side runs on AVX2.
 
 use super::bushing::{Bushing, translational};
 use super::{Mount, Relative, Wrench};
@@ -71,14 +70,14 @@ impl BushingBlock {
     ///
     /// # Panics
     /// Where a joint that was named in [`Self::add`] has no motion or no sum.
-    #[inline]
+    #[inline(always)]
     pub fn apply(&self, motions: &[Relative], sums: &mut [Wrench]) {
         let mut at = Motions::still();
-        for (l, joint) in self.joint.iter().enumerate() {
+        for (l, joint) in self.joint[..self.used].iter().enumerate() {
             at.set(l, &motions[*joint]);
         }
         let mut out = [[0.0; LANES]; 6];
-        self.wrenches_best(&at, &mut out);
+        self.wrenches(&at, &mut out);
         for (l, joint) in self.joint[..self.used].iter().enumerate() {
             let sum = &mut sums[*joint];
             sum.f += Vec3::new(out[0][l], out[1][l], out[2][l]);
@@ -97,29 +96,6 @@ impl BushingBlock {
                 out[3 + i][l] = wrench.m[i];
             }
         }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn wrenches_avx2(&self, at: &Motions, out: &mut [Lane; 6]) {
-        self.wrenches(at, out);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)] // the one way to call code for instructions that not every processor has
-    #[inline]
-    fn wrenches_best(&self, at: &Motions, out: &mut [Lane; 6]) {
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has just said that it has AVX2.
-            unsafe { self.wrenches_avx2(at, out) }
-        } else {
-            self.wrenches(at, out);
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    fn wrenches_best(&self, at: &Motions, out: &mut [Lane; 6]) {
-        self.wrenches(at, out);
     }
 }
 
@@ -169,7 +145,7 @@ mod tests {
     use crate::connection::{ForceLaw, Pose};
     use crate::math::rotation;
 
-    /// A full and a half-filled block give what the law gives one by one, to the bit, on either path.
+    /// A full and a half-filled block give what the law gives one by one, to the bit.
     #[test]
     fn side_by_side_is_one_by_one() {
         let bushing = Bushing {

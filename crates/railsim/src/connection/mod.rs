@@ -42,7 +42,7 @@ pub struct Pair {
 
 impl Pair {
     /// From the wrench on B about A's centre of mass in A's axes, as [`ForceLaw::wrench`] gives it.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn new(on_B_about_A: &Wrench, motion: &Relative, R_IA: &Mat3) -> Self {
         let f = R_IA * on_B_about_A.f;
@@ -95,7 +95,7 @@ macro_rules! each {
 }
 
 impl ForceLaw for Law {
-    #[inline]
+    #[inline(always)]
     fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
         each!(self, law => law.wrench(motion, mount))
     }

@@ -55,7 +55,7 @@ pub struct RailPose {
 }
 
 /// Rail of one side: design position, irregularity and track mass.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn rail_pose(sigma: f64, rail_y: f64, dev: &Deviation, track: &TrackMotion, s_dot: f64) -> RailPose {
     let tilt = dev.cross_level / CROSS_LEVEL_BASE;
@@ -92,7 +92,7 @@ pub struct WheelPose {
 
 /// Relative position of wheel and rail. `q` are the wheelset's coordinates, `nominal_shift` the tape circle's
 /// distance from the rail origin at nominal gauge.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn wheel_pose(
     sigma: f64,
@@ -138,7 +138,7 @@ pub struct PlacedContact {
 
 /// Places a contact of the geometry table in the track frame and computes its creepages at rolling speed `speed`;
 /// `w_T` is the wheelset's angular velocity in track axes.
-#[inline]
+#[inline(always)]
 #[must_use]
 #[allow(clippy::too_many_arguments)] // one stage of the right-hand side, all of it plain data
 pub fn place(

@@ -17,7 +17,7 @@ pub struct Normal {
 
 /// Force at normal penetration `delta` (m, > 0) and approach rate `rate` (m/s) with Hertz constant `hertz` (N/m^1.5)
 /// and dissipation factor `d` (s/m).
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn hunt_crossley(hertz: f64, delta: f64, rate: f64, d: f64) -> Normal {
     let root = delta.sqrt();

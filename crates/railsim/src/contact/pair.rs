@@ -111,7 +111,11 @@ impl Pair {
     pub fn from_json(text: &str) -> Result<Self> {
         let mut json = serde_json::Deserializer::from_str(text);
         let written: Written = serde_path_to_error::deserialize(&mut json).map_err(|e| {
-            Error::input(Fault::new(KeyPath::of(&e.path().to_string()), e.inner().to_string(), "a pair"))
+            // the path of a fault of the text itself, or of the whole, has no key
+            let path = e.path().to_string();
+            let key = if path == "." || path == "?" { "pair" } else { &path };
+            let allowed = "a wheelset on a track: left, right, gauge, flange_back_distance, ...";
+            Error::input(Fault::new(KeyPath::of(key), e.inner().to_string(), allowed))
         })?;
         Self::from_written(&written)
     }

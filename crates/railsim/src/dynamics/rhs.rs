@@ -5,7 +5,7 @@ use crate::connection::lanes::BushingBlock;
 use crate::connection::{ForceLaw, Law, Pair, Pose, Relative};
 use crate::contact::creep::{CreepCase, Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
-use crate::contact::geometry_table::ContactPoint;
+use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::contact::normal::hunt_crossley;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::model::{Contact, Link, Model};
@@ -73,21 +73,23 @@ struct Joints {
 impl Joints {
     fn new(links: &[Link]) -> Self {
         let mut pairs: Vec<(usize, usize)> = Vec::new();
-        let (mut blocks, mut single) = (vec![BushingBlock::empty()], Vec::new());
+        let (mut blocks, mut single) = (Vec::new(), Vec::new());
         for (i, link) in links.iter().enumerate() {
             let pair = (link.a, link.b);
             let joint = pairs.iter().position(|p| *p == pair).unwrap_or_else(|| {
                 pairs.push(pair);
                 pairs.len() - 1
             });
-            if blocks.last().is_some_and(BushingBlock::is_full) {
-                blocks.push(BushingBlock::empty());
-            }
-            let in_block = match (&link.law, blocks.last_mut()) {
-                (Law::Bushing(bushing), Some(block)) => block.add(joint, bushing, &link.mount),
+            let beside = match &link.law {
+                Law::Bushing(bushing) => {
+                    if blocks.last().is_none_or(BushingBlock::is_full) {
+                        blocks.push(BushingBlock::empty());
+                    }
+                    blocks.last_mut().is_some_and(|block| block.add(joint, bushing, &link.mount))
+                }
                 _ => false,
             };
-            if !in_block {
+            if !beside {
                 single.push((joint, i));
             }
         }
@@ -113,6 +115,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    #[inline(always)]
     fn kinematics_stage(&mut self, x: &[f64], dx: &mut [f64]) {
         for i in 0..self.model.count() {
             let q = &x[self.map.q(i)];
@@ -128,6 +131,7 @@ impl<'m> VehicleSystem<'m> {
     }
 
     /// Contacts of every wheel, then the creep forces of all of them in one go, then what they add up to.
+    #[inline(always)]
     fn contact_stage(&mut self, x: &[f64]) {
         self.scratch.creep_cases.clear();
         for w in 0..self.model.wheelsets.len() {
@@ -139,6 +143,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    #[inline(always)]
     fn place_wheels(&mut self, w: usize, x: &[f64]) {
         let at = self.model.bodies.len() + w;
         let scratch = &mut self.scratch;
@@ -167,6 +172,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    #[inline(always)]
     fn creep_stage(&mut self) {
         let Contact::Profiles { law, .. } = &self.model.contact else { return };
         let scratch = &mut self.scratch;
@@ -182,6 +188,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    #[inline(always)]
     fn add_wheel_forces(&mut self, w: usize) {
         let at = self.model.bodies.len() + w;
         let scratch = &mut self.scratch;
@@ -209,6 +216,7 @@ impl<'m> VehicleSystem<'m> {
         scratch.track_load[w] = load;
     }
 
+    #[inline(always)]
     fn connection_stage(&mut self) {
         let Joints { pairs, motions, sums, blocks, single } = &mut self.joints;
         let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
@@ -234,6 +242,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    #[inline(always)]
     fn speed_hold_stage(&mut self, t: f64, x: &[f64]) {
         if let Some(hold) = &self.model.speed_hold {
             let (s, v) = self.program.at(t);
@@ -243,6 +252,7 @@ impl<'m> VehicleSystem<'m> {
         }
     }
 
+    #[inline(always)]
     fn acceleration_stage(&mut self, x: &[f64], dx: &mut [f64]) {
         let first = self.model.bodies.len();
         for i in 0..self.model.count() {
@@ -295,7 +305,7 @@ struct Axle<'a> {
 impl Axle<'_> {
     /// One wheel: place it on its rail, look its contacts up, give each its normal force and ask for its creep force. Gives
     /// back the pose with which the wheel left the table.
-    #[inline]
+    #[inline(always)]
     fn wheel(&self, sigma: f64, wheel: &mut Wheel, cases: &mut Vec<CreepCase>) -> Result<(), WheelPose> {
         let (half, radius) = (self.set.tape_half_distance, self.set.radius);
         match &self.model.contact {
@@ -304,7 +314,7 @@ impl Axle<'_> {
                 let rail = rail_pose(sigma, rail_y, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
                 wheel.lift(pose.shift);
-                let mut found = [ContactPoint::default(); 2];
+                let mut found = [ContactPoint::default(); MAX_CONTACTS];
                 let count = table
                     .contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found)
                     .map_err(|_| pose)?;
@@ -342,7 +352,7 @@ impl Axle<'_> {
         Ok(())
     }
 
-    #[inline]
+    #[inline(always)]
     fn textbook(&self, book: &Textbook, sigma: f64, pose: &WheelPose, surface: f64) -> ContactForce {
         let half = sigma * self.set.tape_half_distance;
         // In axle axes the contact is below the tape circle, at the rolling radius there.
@@ -404,11 +414,7 @@ impl System for VehicleSystem<'_> {
     }
 
     fn rhs(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.kinematics_stage(x, dx);
-        self.contact_stage(x);
-        self.connection_stage();
-        self.speed_hold_stage(t, x);
-        self.acceleration_stage(x, dx);
+        self.stages_best(t, x, dx);
     }
 
     fn stiff_blocks(&self) -> &[StiffBlock] {
@@ -417,5 +423,41 @@ impl System for VehicleSystem<'_> {
 
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
         stiff::matrices(self.model, &self.scratch, block, k, c);
+    }
+}
+
+impl VehicleSystem<'_> {
+    #[cfg(target_arch = "x86_64")]
+    #[allow(unsafe_code)] // the one way to call code for instructions that not every processor has
+    fn stages_best(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has just said that it has AVX2.
+            unsafe { self.stages_avx2(t, x, dx) }
+        } else {
+            self.stages(t, x, dx);
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn stages_best(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.stages(t, x, dx);
+    }
+
+    /// The same stages in wider registers. Nothing fuses a multiplication with an addition: the same bytes.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn stages_avx2(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.stages(t, x, dx);
+    }
+
+    /// The right-hand side ([`System::rhs`]) with the instructions that every processor has.
+    // Stages and what they call are `inline(always)`, so that they are compiled again for wider ones.
+    #[inline(always)]
+    pub fn stages(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.kinematics_stage(x, dx);
+        self.contact_stage(x);
+        self.connection_stage();
+        self.speed_hold_stage(t, x);
+        self.acceleration_stage(x, dx);
     }
 }

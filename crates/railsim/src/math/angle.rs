@@ -4,7 +4,7 @@
 pub type SinCos = (f64, f64);
 
 /// Sine and cosine of a + b.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn add((sa, ca): SinCos, (sb, cb): SinCos) -> SinCos {
     (sa * cb + ca * sb, ca * cb - sa * sb)
@@ -12,7 +12,7 @@ pub fn add((sa, ca): SinCos, (sb, cb): SinCos) -> SinCos {
 
 /// Sine and cosine of a small angle (rad), by their series to the 9th and 10th power: exact to rounding for
 /// |x| <= 0.12; larger angles go to the library.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn small(x: f64) -> SinCos {
     if x.abs() > 0.12 {

@@ -250,7 +250,7 @@ impl Layout {
     }
 
     /// The frame at arc length `s` (m); before the first and after the last segment the track goes straight on.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn frame(&self, s: f64) -> Frame {
         if self.tangent { Frame::level(s) } else { self.general_frame(s) }

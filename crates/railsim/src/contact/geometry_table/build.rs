@@ -243,9 +243,9 @@ fn node(
         let average =
             average(rail, stations, turned, offset, zone, penetration, (lowest, least), &scratch.fine);
         gaps.gap[zone] = least;
-        gaps.yaw[zone] = 0.5
-            * (placement.wheel_radius + average.z_wheel)
-            * average.angle.abs().min(STEEPEST_CONTACT).tan().powi(2);
+        let tan = average.angle.clamp(-STEEPEST_CONTACT, STEEPEST_CONTACT).tan();
+        // the second part: the profile's own distance from the running circle, foreshortened
+        gaps.yaw[zone] = 0.5 * tan * ((placement.wheel_radius + average.z_wheel) * tan - average.y_wheel);
         *out = average.values(placement);
         if at_end(rail, turned, offset, lowest) {
             out[0] = f64::NAN;
@@ -357,9 +357,10 @@ impl Average {
         let slope = 0.5 * radius * (sin + sin / (cos * cos)) * turning;
         let bound = YAW_TRAVEL / (YAW_FULL * YAW_FULL);
         let travel = (slope / self.curvature).clamp(-bound, bound);
-        let outline = radius * sin * (1.0 + 0.5 * (sin / cos).powi(2));
-        let on_wheel = travel - outline;
-        [cos * travel, -sin * travel, cos * on_wheel, -sin * on_wheel, -self.rail_curvature * travel]
+        let tan = sin / cos;
+        // wheel and rail meet at the same lateral place: the outline's own shift is what the station loses
+        let on_wheel = cos * travel - radius * tan;
+        [cos * travel, -sin * travel, on_wheel, -tan * on_wheel, -self.rail_curvature * travel]
     }
 }
 

@@ -26,7 +26,7 @@
 //! **Yaw** enters by its square, to first order, with the rates of every node. The outline of the yawed wheel stands nearer to the
 //! rail by u = r sin(gamma) tan(gamma) yaw^2/2 along the normal (vertically r tan(gamma)^2 yaw^2/2), which varies along the wheel as gamma does: the
 //! contact moves by u'/k along the rail, k the relative lateral curvature, at most [`YAW_TRAVEL`], and its angle with it; on the wheel it also leads by r tan(gamma) tan(yaw), whence
-//! the outline's own shift r sin(gamma) (1 + tan(gamma)^2/2) yaw^2. [`crate::contact::search`] has yaw exactly.
+//! the outline's own outward shift r tan(gamma) yaw^2. [`crate::contact::search`] has yaw exactly.
 //!
 //! **Ends.** Where a zone would come closest to the rail at an end of either profile, nothing is known of the contact: asking for it is an
 //! error ([`OutOfTable`]).
@@ -145,7 +145,7 @@ pub struct OutOfTable {
 struct Gaps {
     /// Vertical gap per zone, m.
     gap: [f64; 2],
-    /// r tan(gamma)^2/2 per zone, m/rad^2.
+    /// By yaw^2, r tan(gamma)^2/2 - y_wheel tan(gamma)/2 per zone, m/rad^2.
     yaw: [f64; 2],
 }
 
@@ -175,7 +175,7 @@ struct Place {
 }
 
 impl Place {
-    #[inline]
+    #[inline(always)]
     fn nodes(&self) -> [usize; 4] {
         [self.node, self.node + 1, self.node + SHIFTS, self.node + SHIFTS + 1]
     }
@@ -201,7 +201,7 @@ impl GeometryTable {
         &self.rail
     }
 
-    #[inline]
+    #[inline(always)]
     fn place(&self, dy: f64, roll: f64) -> Result<Place, OutOfTable> {
         let x = (dy + SHIFT_RANGE) * (1.0 / SHIFT_STEP);
         let r = (roll + ROLL_RANGE) * (1.0 / ROLL_STEP);
@@ -217,7 +217,7 @@ impl GeometryTable {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn gaps_at(&self, place: &Place) -> Gaps {
         let mut out = Gaps { gap: [0.0; 2], yaw: [0.0; 2] };
         for (n, w) in place.nodes().into_iter().zip(place.weights) {
@@ -230,7 +230,7 @@ impl GeometryTable {
         out
     }
 
-    #[inline]
+    #[inline(always)]
     fn values_at(&self, place: &Place, zone: usize) -> Values {
         let mut out = [0.0; 17];
         for (n, w) in place.nodes().into_iter().zip(place.weights) {
@@ -253,7 +253,7 @@ impl GeometryTable {
     ///
     /// # Errors
     /// Shift or roll outside the table, or not a number; contact at an end of a profile.
-    #[inline]
+    #[inline(always)]
     pub fn contacts(
         &self,
         dy: f64,
@@ -308,7 +308,7 @@ impl GeometryTable {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn point(zone: Zone, penetration: f64, v: &Values) -> ContactPoint {
     ContactPoint {
         zone,

@@ -80,7 +80,7 @@ impl DeviationField {
     }
 
     /// The deviation at arc length `s` (m), any s.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn at(&self, s: f64) -> Deviation {
         if self.parts.is_empty() {
