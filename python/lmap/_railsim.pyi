@@ -235,9 +235,9 @@ def creep_forces(
     """Creep forces on the wheel: a row of `fx`, `fy` (N) for each contact, and `mz` (N m) where `c33` is given.
 
     `law_json` is a law as `run.creep` has it. `contacts` has `a`, `b` (m, along rolling and across), `n` (N), `c11`,
-    `c22`, `c23`, `shear_modulus` (Pa), `xi`, `eta`, `phi` (1/m) and `mu`, and may have `c33` and `speed` (m/s): a number for
-    all contacts, or an array of float64 or a list with one for each. `falling_json`, `{"ratio": A, "decay": B}`, makes
-    `mu` fall with the slip velocity `speed` times creepage. `mz` is NaN for a law that gives no moment.
+    `c22`, `c23`, `shear_modulus` (Pa), `xi`, `eta`, `phi` (1/m), `mu`, and may have `c33` and `speed` (m/s): a number
+    for all contacts, or an array of float64 or a list with one for each. `falling_json`, `{"ratio": A, "decay": B}`,
+    makes `mu` fall with the slip velocity `speed` times creepage. `mz` is NaN for a law that gives no moment.
 
     Axes of the contact: x rolling, y lateral, right-handed with the normal; positive creepage gives negative force.
     `InputError` names the array and the index.

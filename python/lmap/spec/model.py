@@ -8,7 +8,15 @@ import math
 import re
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from lmap.criteria.chain import Criterion
 
@@ -81,14 +89,9 @@ def _names(value: Any) -> list[str]:
     return names
 
 
-def _friction(value: Any) -> Any:
-    """A table is the core's to check."""
-    if value is None or isinstance(value, dict):
-        return value
-    return _NUMBER.validate_python(value)
-
-
-_NUMBER: TypeAdapter[float] = TypeAdapter(Annotated[float, Field(ge=0.0, allow_inf_nan=False, strict=True)])
+def _friction(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    """A number; or a table (per rail, along the track, with the slip velocity), which is the core's to check."""
+    return value if isinstance(value, dict) else number(value)
 
 
 class RunPart(BaseModel):
@@ -103,8 +106,9 @@ class RunPart(BaseModel):
     wheel_profile: Annotated[
         list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
     ] = None
-    friction: Annotated[float | dict[str, Any] | None, BeforeValidator(_friction)] = None
-    """A number, or a table (per rail, along the track, falling with the slip velocity), which the core checks."""
+    friction: Annotated[
+        float | None, Field(ge=0.0, allow_inf_nan=False, strict=True), WrapValidator(_friction)
+    ] = None
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:
