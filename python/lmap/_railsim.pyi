@@ -201,10 +201,10 @@ def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
     """
 
 def hertz(force: Buffer, kx: Buffer, ky: Buffer, youngs_modulus: float, poisson: float) -> Frame:
-    """Hertz's patch for arrays of float64 of one length: normal force (N) and relative curvatures (1/m) along and across.
+    """Hertz's patch for arrays of float64 of one length: normal force (N), relative curvatures (1/m) along and across.
 
-    Columns: semi-axes `a` along and `b` across (m), `approach` (m), `max_pressure` (Pa); NaN for a curvature that is not
-    positive.
+    Columns: semi-axes `a` along and `b` across (m), `approach` (m), `max_pressure` (Pa); NaN for a curvature that is
+    not positive.
     """
 
 def non_elliptic(
@@ -216,15 +216,16 @@ def non_elliptic(
     force: float | None,
     approach: float | None,
 ) -> tuple[dict[str, float], Frame]:
-    """Patch by virtual penetration (Kik and Piotrowski) for a separation (m) at positions (m, rising), at a force (N) or an
-    approach (m).
+    """Patch by virtual penetration (Kik and Piotrowski) for a separation (m) at positions (m, rising), at a force (N)
+    or an approach (m).
 
-    The figures `approach`, `force`, `max_pressure`, `area`, `origin`, `a`, `b` (SI), and the outline: `y`, `half_length` (m).
+    The figures `approach`, `force`, `max_pressure`, `area`, `origin`, `a`, `b` (SI), and the outline: `y`,
+    `half_length` (m).
     """
 
 def contact_gap(pair_json: str, y: float, right: bool, half_width: float, step: float) -> Frame:
-    """Normal distance of the undeformed surfaces across the place where a wheel of a wheelset standing at `y` (m) touches
-    first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m), `k_xx` (1/m).
+    """Normal distance of the undeformed surfaces across the place where a wheel of a wheelset standing at `y` (m)
+    touches first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m), `k_xx` (1/m).
     """
 
 def creep_forces(
