@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from lmap import files, toml
 from lmap.contact.core import POISSON, POSITIVE, Array, broadcast, call, columns, refuse
-from lmap.contact.patch import POISSON_RATIO, YOUNGS_MODULUS, NonElliptic, non_elliptic
+from lmap.contact.patch import POISSON_RATIO, YOUNGS_MODULUS, NonElliptic, hertz, non_elliptic
 from lmap.contact.profile import Kind, Profile, profile_of, read_profile
 from lmap.errors import InputProblem, Problem, SimulationProblem, listed, nearest_hint
 
@@ -25,6 +25,11 @@ METHODS = {
     "harmonic": "first harmonic of the rolling radius difference",
 }
 """How an equivalent conicity is found."""
+
+Normal = Literal["hertz", "kik_piotrowski"]
+"""How a patch is found from its gap."""
+
+NORMALS: tuple[Normal, ...] = ("hertz", "kik_piotrowski")
 
 TREAD, FLANGE, FLANGE_BACK = 0, 1, 2
 """Parts of a wheel, as in `Contacts.part`."""
@@ -244,27 +249,63 @@ class Pair:
         return -(right if self._mirrored else self._bears(-1.0)), right
 
     def patch(
-        self, y: float = 0.0, *, side: Literal["left", "right"] = "right", load: float = 1e5
+        self,
+        y: float = 0.0,
+        *,
+        side: Literal["left", "right"] = "right",
+        load: float = 1e5,
+        normal: Normal = "kik_piotrowski",
     ) -> NonElliptic:
-        """The patch of one wheel at a shift (m) without an ellipse: virtual penetration, `non_elliptic`, of
-        the place that touches first.
+        """The patch of one wheel at a shift (m) under a normal force `load` (N): outline, pressure, area, approach.
 
-        `load` is the normal force, N. The pose is that of the rigid wheelset, rolled until both wheels touch.
+        `normal="kik_piotrowski"` takes the gap itself about the place that touches first, in the pose of the rigid
+        wheelset, rolled until both wheels touch (`non_elliptic`); `"hertz"` the ellipse of the curvature that the most
+        loaded patch of `contacts` has. For analysis: runs know Hertz alone.
         """
         values, _ = broadcast({"y": y, "load": load})
         refuse(values, {"load": POSITIVE})
-        if side not in ("left", "right"):
-            raise InputProblem(Problem(key=("side",), found=repr(side), allowed="left, right"))
-        found = self._call(toml.core().contact_gap, y, side == "right", 0.03, 2e-5)
-        gap = columns(found)
-        at_contact = int(np.argmin(np.abs(gap["s"])))
+        for key, word, known in (("side", side, ("left", "right")), ("normal", normal, NORMALS)):
+            if word not in known:
+                raise InputProblem(
+                    Problem(
+                        key=(key,), found=f'"{word}"', allowed=listed(known), hint=nearest_hint(word, known)
+                    )
+                )
+        if normal == "hertz":
+            return self._hertz(y, -1.0 if side == "left" else 1.0, load)
+        gap = columns(self._call(toml.core().contact_gap, y, side == "right", 0.03, 2e-5))
         return non_elliptic(
             gap["s"],
             gap["gap"],
-            curvature=float(gap["k_xx"][at_contact]),
+            curvature=float(gap["k_xx"][int(np.argmin(np.abs(gap["s"])))]),
             force=load,
             youngs_modulus=self.youngs_modulus,
             poisson=self.poisson,
+        )
+
+    def _hertz(self, y: float, side: float, load: float) -> NonElliptic:
+        found = self.contacts(y, load=load)
+        found = found.where(found.side == side)
+        if not len(found):
+            allowed = "a shift at which both wheels stand"
+            raise InputProblem(
+                Problem(key=("y",), found=f"{y:g} m, where a wheel leaves its rail", allowed=allowed)
+            )
+        main = int(np.argmax(found.normal))
+        k_x, k_y = float(found.k_xx[main]), float(found.curvature[main])
+        ellipse = hertz(load, k_x, k_y, youngs_modulus=self.youngs_modulus, poisson=self.poisson)
+        a, b = float(ellipse.a), float(ellipse.b)
+        across = b * np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 181))
+        return NonElliptic(
+            approach=float(ellipse.approach),
+            force=load,
+            max_pressure=float(ellipse.max_pressure),
+            area=math.pi * a * b,
+            origin=0.0,
+            a=a,
+            b=b,
+            y=across,
+            half_length=a * np.sqrt(np.maximum(1.0 - (across / b) ** 2, 0.0)),
         )
 
     def _call(self, function: Any, *arguments: Any) -> Any:
