@@ -225,7 +225,8 @@ def non_elliptic(
 
 def contact_gap(pair_json: str, y: float, right: bool, half_width: float, step: float) -> Frame:
     """Normal distance of the undeformed surfaces across the place where a wheel of a wheelset standing at `y` (m)
-    touches first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m), `k_xx` (1/m).
+    touches first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m),
+    `k_xx` (1/m).
     """
 
 def creep_forces(
@@ -247,11 +248,12 @@ def creep_forces(
 def kalker_coefficients(a_over_b: Sequence[float], poisson: float) -> Frame:
     """Kalker's `c11`, `c22`, `c23`, `c33` for axis ratios (a along rolling) at one Poisson's ratio."""
 
-# A pair, as JSON: `left` and `right` (the same as left where missing), each with `wheel` and `rail` (points [y, z] in mm; y
-# outward, z down; wheel with its running circle at y = 0 and the flange at negative y, rail upright with its top at the
-# origin) and `radius` (m); `gauge`, `gauge_point_depth` (0.014), `rail_inclination` (slope, 0), `flange_back_distance`,
-# `tape_from_flange_back` (0.07), `smoothing` (half-width of the profile smoothing, 0.001), in m; `youngs_modulus` (Pa), `poisson`.
-# The JSON of a case does as well: its vehicle's wheels on its track. Unknown or missing keys are an `InputError`.
+# A pair, as JSON: `left` and `right` (the same as left where missing), each with `wheel` and `rail` (points [y, z] in
+# mm; y outward, z down; wheel with its running circle at y = 0 and the flange at negative y, rail upright with its top
+# at the origin) and `radius` (m); `gauge`, `gauge_point_depth` (0.014), `rail_inclination` (slope, 0),
+# `flange_back_distance`, `tape_from_flange_back` (0.07), `smoothing` (half-width of the profile smoothing, 0.001), in m;
+# `youngs_modulus` (Pa), `poisson`. The JSON of a case does as well: its vehicle's wheels on its track. Unknown or
+# missing keys are an `InputError`.
 
 def rolling_radius_difference(
     pair_json: str, shifts: Sequence[float], free_roll: bool = False
@@ -289,17 +291,18 @@ def contact_map(
     yaw: float = 0.0,
     free_roll: bool = True,
     load: float | None = None,
-    rail_shift: tuple[float, float] = (0.0, 0.0),
-    rail_roll: tuple[float, float] = (0.0, 0.0),
+    rail_shift: tuple[float, float] | None = None,
+    rail_roll: tuple[float, float] | None = None,
 ) -> Frame:
     """Every contact of both wheels at each shift (m), a row each, by direct search.
 
-    Without `load` (N per wheel, vertical) rigid: the up to three closest places of a wheel, `gap` along the normal (the
-    first touches). With it elastic: patches, with `normal` (N), semi-axes `a` and `b` (m), relative lateral `curvature`
-    (1/m) and `spread` (0 for Hertz; beyond 0.5 the patch is no ellipse). Columns: `y` (of the wheelset), `side` (-1 left, 1 right),
-    `rank`, `part` (0 tread, 1 flange, 2 back of flange), `roll`, `z` of the wheelset, `gap`, `y_rail`, `z_rail`, `y_wheel`, `z_wheel`
-    (side coordinates: outward, down), `x` (ahead of the axle), `angle`, `radius`, `k_xx`, `k_yy` and those. Shifts at which a
-    wheel does not stand have no rows. `rail_shift` (m, outward) and `rail_roll` (rad, field side down): left, right.
+    Without `load` (N per wheel, vertical) rigid: the up to three closest places of a wheel in the order in which they
+    touch, `gap` along the normal. With it elastic: patches, with `normal` (N), semi-axes `a` and `b` (m), relative
+    lateral `curvature` (1/m) and `spread` (0 for Hertz; beyond 0.25 the patch is no ellipse). Columns: `y` (of the
+    wheelset), `side` (-1 left, 1 right), `rank`, `part` (0 tread, 1 flange, 2 back of flange), `roll`, `z` of the
+    wheelset, `gap`, `y_rail`, `z_rail`, `y_wheel`, `z_wheel` (side coordinates: outward, down), `x` (ahead of the
+    axle), `angle`, `radius`, `k_xx`, `k_yy` and those. Shifts at which a wheel does not stand have no rows.
+    `rail_shift` (m, outward) and `rail_roll` (rad, field side down): left, right.
     """
 
 def run_cases(

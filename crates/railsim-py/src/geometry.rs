@@ -129,7 +129,7 @@ const COLUMNS: [&str; 21] = [
 
 /// Every contact at every shift.
 #[pyfunction]
-#[pyo3(signature = (pair_json, shifts, yaw=0.0, free_roll=true, load=None, rail_shift=[0.0, 0.0], rail_roll=[0.0, 0.0]))]
+#[pyo3(signature = (pair_json, shifts, yaw=0.0, free_roll=true, load=None, rail_shift=None, rail_roll=None))]
 #[allow(clippy::too_many_arguments)] // keywords in Python
 pub fn contact_map(
     py: Python<'_>,
@@ -138,9 +138,10 @@ pub fn contact_map(
     yaw: f64,
     free_roll: bool,
     load: Option<f64>,
-    rail_shift: [f64; 2],
-    rail_roll: [f64; 2],
+    rail_shift: Option<[f64; 2]>,
+    rail_roll: Option<[f64; 2]>,
 ) -> PyResult<Frame> {
+    let (rail_shift, rail_roll) = (rail_shift.unwrap_or_default(), rail_roll.unwrap_or_default());
     let rails = [0, 1].map(|i| RailShift { y: rail_shift[i], z: 0.0, roll: rail_roll[i] });
     let columns = py
         .detach(|| {

@@ -81,7 +81,7 @@ fn table_against_direct_search() {
                     compare(
                         &side,
                         &table,
-                        -0.0093 + 0.000_1637 * f64::from(i),
+                        -0.0093 + 1.637e-4 * f64::from(i),
                         -0.0051 + 0.0047 * f64::from(j),
                         yaw,
                         &mut errors,

@@ -6,7 +6,8 @@
 //! cancels: tan(gamma_e) = pi^2/(8 I^2), I = int_0^A dy/sqrt(2 (S(A) - S(y))). Both sides being mirror images, dr is odd and the motion
 //! symmetrical, +-A.
 //!
-//! On the reference pairs of UIC 519/EN 15302 (wheels A, B, H, I on rail A, gauge 1435.16 mm, r0 460 mm, 3 mm) this gives 0.177, 0.077, 0.274, 0.512, and
+//! [`RadiusCurve`] is of rigid contact by direct search and any two wheels; the methods of [`GeometryTable`] are of elastic contact and a rolling axle:
+//! on the reference pairs of UIC 519/EN 15302 (wheels A, B, H, I on rail A, gauge 1435.16 mm, r0 460 mm, 3 mm) this gives 0.177, 0.077, 0.274, 0.512, and
 //! 0.171, 0.060, 0.255, 0.503 if the roll of the wheelset is left out, against 0.188, 0.058, 0.245, 0.489 in the standard; its tolerance for calculations is
 //! the smaller of 0.05 and half the value.
 

@@ -209,7 +209,7 @@ fn node(
     scratch.coarse.clear();
     scratch.coarse.extend(turned.iter().step_by(STRIDE).map(&gap));
     let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
-    let mut values = [[0.0; 17]; 2];
+    let mut values = [[0.0; 16]; 2];
     for (zone, out) in values.iter_mut().enumerate() {
         let supported = |k: usize| stations[k].chi[zone] > 0.0;
         let coarse_least = scratch
@@ -343,12 +343,11 @@ impl Average {
             rates[1],
             rates[2],
             rates[3],
-            rates[4],
         ]
     }
 
-    /// Rates by yaw^2 of y and z on the rail, y and z on the wheel, and of the angle.
-    fn yaw_rates(&self, placement: &Placement) -> [f64; 5] {
+    /// Rates by yaw^2 of y on the rail, y on the wheel and the angle, and dz/dy.
+    fn yaw_rates(&self, placement: &Placement) -> [f64; 4] {
         let angle = self.angle.clamp(-STEEPEST_CONTACT, STEEPEST_CONTACT);
         let (sin, cos) = angle.sin_cos();
         let radius = placement.wheel_radius + self.z_wheel;
@@ -360,7 +359,7 @@ impl Average {
         let tan = sin / cos;
         // wheel and rail meet at the same lateral place: the outline's own shift is what the station loses
         let on_wheel = cos * travel - radius * tan;
-        [cos * travel, -sin * travel, on_wheel, -tan * on_wheel, -self.rail_curvature * travel]
+        [cos * travel, on_wheel, -self.rail_curvature * travel, -tan]
     }
 }
 

@@ -149,9 +149,9 @@ struct Gaps {
     yaw: [f64; 2],
 }
 
-/// The rest of a node for one zone, in the order of [`ContactPoint`] from `share` on, then the rates by yaw^2 of `y_rail` to `angle`. A share that is no
-/// number marks an end of a profile.
-type Values = [f64; 17];
+/// The rest of a node for one zone, in the order of [`ContactPoint`] from `share` on, then the rates by yaw^2 of `y_rail`, `y_wheel` and `angle`, and dz/dy at
+/// the contact. A share that is no number marks an end of a profile.
+type Values = [f64; 16];
 
 /// Table of contacts of one wheel/rail pair over shift and roll. Immutable; share it between wheels and threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -232,7 +232,7 @@ impl GeometryTable {
 
     #[inline(always)]
     fn values_at(&self, place: &Place, zone: usize) -> Values {
-        let mut out = [0.0; 17];
+        let mut out = [0.0; 16];
         for (n, w) in place.nodes().into_iter().zip(place.weights) {
             for (o, v) in out.iter_mut().zip(&self.values[zone][n]) {
                 *o += w * v;
@@ -270,10 +270,12 @@ impl GeometryTable {
             if penetration > 0.0 {
                 let mut v = self.values_at(&place, zone);
                 if v[0] > 0.0 {
-                    let (values, rates) = v.split_at_mut(12);
-                    for (value, rate) in values[1..6].iter_mut().zip(rates) {
-                        *value += *rate * yaw * yaw;
-                    }
+                    let [on_rail, on_wheel, angle] = [v[12], v[13], v[14]].map(|rate| rate * yaw * yaw);
+                    v[1] += on_rail;
+                    v[2] += v[15] * on_rail;
+                    v[3] += on_wheel;
+                    v[4] += v[15] * on_wheel;
+                    v[5] += angle;
                     out[count] = point(name, penetration, &v);
                     count += 1;
                 } else if v[0].is_nan() {
