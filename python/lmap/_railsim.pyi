@@ -251,7 +251,7 @@ def kalker_coefficients(a_over_b: Sequence[float], poisson: float) -> Frame:
 # A pair, as JSON: `left` and `right` (the same as left where missing), each with `wheel` and `rail` (points [y, z] in
 # mm; y outward, z down; wheel with its running circle at y = 0 and the flange at negative y, rail upright with its top
 # at the origin) and `radius` (m); `gauge`, `gauge_point_depth` (0.014), `rail_inclination` (slope, 0),
-# `flange_back_distance`, `tape_from_flange_back` (0.07), `smoothing` (half-width of the profile smoothing, 0.001), in m;
+# `flange_back_distance`, `tape_from_flange_back` (0.07), `smoothing` (half-width of the smoothing, 0.001), in m;
 # `youngs_modulus` (Pa), `poisson`. The JSON of a case does as well: its vehicle's wheels on its track. Unknown or
 # missing keys are an `InputError`.
 

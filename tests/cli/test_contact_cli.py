@@ -135,11 +135,14 @@ def test_a_profile_that_crosses_itself(message: Callable[..., str]) -> None:
 
 def test_a_gauge_that_lets_the_wheelset_fall_in(message: Callable[..., str]) -> None:
     line = message(*PAIR, "--gauge", "1700")
-    assert line.startswith("lmap: gauge: found 1700 mm, at which the wheelset does not stand: it falls in")
+    assert line.startswith("lmap: gauge: found 1.7 m: ")
+    assert "lets the wheelset fall between the rails; allowed: " in line
 
 
 def test_a_gauge_on_which_the_flanges_stand(message: Callable[..., str]) -> None:
-    assert message(*PAIR, "--gauge", "1380").startswith("lmap: gauge: found 1380 mm, at which ")
+    line = message(*PAIR, "--gauge", "1380")
+    assert line.startswith("lmap: gauge: found 1.38 m: the flanges, ")
+    assert "stand on the rails; allowed: " in line
 
 
 @pytest.mark.parametrize(

@@ -63,11 +63,11 @@ def contact(
     pair = Pair(
         wheel,
         rail,
-        gauge=1e-3 * gauge,
-        gauge_point_depth=1e-3 * gauge_depth,
+        gauge=round(1e-3 * gauge, 9),
+        gauge_point_depth=round(1e-3 * gauge_depth, 9),
         inclination=_slope(inclination),
-        flange_back=1e-3 * flange_back,
-        radius=1e-3 * radius,
+        flange_back=round(1e-3 * flange_back, 9),
+        radius=round(1e-3 * radius, 9),
     )
     laws = {} if law is None else {"laws": law}
     found = survey(pair, friction=friction, load=1e3 * load, speed=speed / 3.6, **laws)

@@ -320,7 +320,9 @@ class Pair:
             self._profiles.get((str(problem.key[0]), str(problem.key[1]))) if len(problem.key) > 1 else None
         )
         if profile is None:
-            return problem
+            # the core calls the rest as a case does: track.gauge
+            inside_case = problem.key[:1] in (("track",), ("vehicle",))
+            return replace(problem, key=problem.key[-1:]) if inside_case else problem
         if profile.path is None:
             return replace(problem, key=(profile.name, *problem.key[2:]))
         return replace(problem, file=files.shown(profile.path), key=problem.key[2:])
