@@ -20,13 +20,16 @@ __all__ = [
     "_run_probes",
     "channels",
     "check_case",
+    "contact_gap",
     "contact_map",
     "creep_forces",
     "curve_conicity",
     "equivalent_conicity",
     "fingerprint",
+    "hertz",
     "inspect_profile",
     "kalker_coefficients",
+    "non_elliptic",
     "pair_conicity",
     "profile_quality",
     "read_profile",
@@ -201,6 +204,35 @@ def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
     wheel would leave the profiles.
     """
 
+def hertz(force: Buffer, kx: Buffer, ky: Buffer, youngs_modulus: float, poisson: float) -> Frame:
+    """Hertz's patch for arrays of float64 of one length: normal force (N), relative curvatures (1/m) along and across.
+
+    Columns: semi-axes `a` along and `b` across (m), `approach` (m), `max_pressure` (Pa); NaN for a curvature that is
+    not positive.
+    """
+
+def non_elliptic(
+    y: Buffer,
+    separation: Buffer,
+    curvature: float,
+    youngs_modulus: float,
+    poisson: float,
+    force: float | None,
+    approach: float | None,
+) -> tuple[dict[str, float], Frame]:
+    """Patch by virtual penetration (Kik and Piotrowski) for a separation (m) at positions (m, rising), at a force (N)
+    or an approach (m).
+
+    The figures `approach`, `force`, `max_pressure`, `area`, `origin`, `a`, `b` (SI), and the outline: `y`,
+    `half_length` (m).
+    """
+
+def contact_gap(pair_json: str, y: float, right: bool, half_width: float, step: float) -> Frame:
+    """Normal distance of the undeformed surfaces across the place where a wheel of a wheelset standing at `y` (m)
+    touches first: columns `s` (m, outward along the contact plane, every `step` up to `half_width`), `gap` (m),
+    `k_xx` (1/m).
+    """
+
 def creep_forces(
     law_json: str,
     contacts: dict[str, float | Sequence[float] | Buffer],
@@ -223,7 +255,7 @@ def kalker_coefficients(a_over_b: Sequence[float], poisson: float) -> Frame:
 # A pair, as JSON: `left` and `right` (the same as left where missing), each with `wheel` and `rail` (points [y, z] in
 # mm; y outward, z down; wheel with its running circle at y = 0 and the flange at negative y, rail upright with its top
 # at the origin) and `radius` (m); `gauge`, `gauge_point_depth` (0.014), `rail_inclination` (slope, 0),
-# `flange_back_distance`, `tape_from_flange_back` (0.07), `smoothing` (half-width of profile smoothing, 0.001), in m;
+# `flange_back_distance`, `tape_from_flange_back` (0.07), `smoothing` (half-width of the smoothing, 0.001), in m;
 # `youngs_modulus` (Pa), `poisson`. The JSON of a case does as well: its vehicle's wheels on its track. Unknown or
 # missing keys are an `InputError`.
 

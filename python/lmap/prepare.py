@@ -184,7 +184,7 @@ def _profiles(
                 continue
             found[name] = (path, text)
             try:
-                points = contact.read_profile(text, name)
+                points = contact.profile_points(text, name)
             except InputProblem as error:
                 problems += [problem.at(file=files.shown(path)) for problem in error.problems]
                 continue
@@ -308,7 +308,7 @@ def vehicle_channels(name: str) -> list[Channel]:
     data = {}
     for profile, key in case.profile_names.items():
         path = _first(profile, places)
-        points = contact.read_profile(files.read_text(path, "profile"), profile)
+        points = contact.profile_points(files.read_text(path, "profile"), profile)
         data[profile] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
     try:
         return channels(case.with_profiles(data))

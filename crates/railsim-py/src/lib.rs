@@ -9,6 +9,7 @@ mod creep;
 mod enter;
 mod errors;
 mod geometry;
+mod patch;
 mod probe;
 mod profile;
 mod run;
@@ -30,6 +31,8 @@ mod module {
     };
     #[pymodule_export]
     use crate::geometry::{contact_map, curve_conicity, pair_conicity, rolling_radius_difference};
+    #[pymodule_export]
+    use crate::patch::{contact_gap, hertz, non_elliptic};
     #[pymodule_export]
     use crate::probe::_run_probes;
     #[pymodule_export]

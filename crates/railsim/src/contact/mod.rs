@@ -14,6 +14,7 @@ pub mod friction;
 pub mod geometry_table;
 pub mod hertz;
 pub mod kalker_table;
+pub mod non_elliptic;
 pub mod normal;
 pub mod pair;
 pub mod profile;
