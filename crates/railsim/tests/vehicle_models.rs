@@ -1,5 +1,7 @@
 //! Every vehicle that ships, and parts of one: it compiles, stands at its design height, its wheel loads are its weight.
 
+#![allow(clippy::print_stdout)] // both numbers are shown, from helpers too
+
 mod common;
 
 use railsim::contact::textbook::Textbook;
