@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
-use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchIterator};
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchIterator, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict};
@@ -35,6 +35,9 @@ impl Frame {
             Ended::EndOfTrack => {
                 json!({"kind": "end_of_track", "t": last("t"), "s": last("s"), "message": null})
             }
+            Ended::Complete => {
+                json!({"kind": "complete", "t": last("t"), "s": last("s"), "message": null})
+            }
             Ended::Diverged(error) => {
                 let (t, s) = match error {
                     railsim::Error::Diverged { t, s, .. } => (Some(*t), Some(*s)),
@@ -43,7 +46,7 @@ impl Frame {
                 json!({"kind": "diverged", "t": t, "s": s, "message": error.to_string()})
             }
         };
-        let batch = batch(outcome.columns)?;
+        let batch = batch(outcome.columns, outcome.labels)?;
         Ok(Self { batch, ended, statistics: outcome.statistics, wall_s })
     }
 
@@ -53,16 +56,20 @@ impl Frame {
     /// `InternalError` when the columns differ in length.
     pub fn table(columns: Vec<(String, Vec<f64>)>) -> PyResult<Self> {
         let ended = json!({"kind": "computed", "t": null, "s": null, "message": null});
-        Ok(Self { batch: batch(columns)?, ended, statistics: json!({}), wall_s: 0.0 })
+        Ok(Self { batch: batch(columns, Vec::new())?, ended, statistics: json!({}), wall_s: 0.0 })
     }
 }
 
-fn batch(columns: Vec<(String, Vec<f64>)>) -> PyResult<RecordBatch> {
+fn batch(columns: Vec<(String, Vec<f64>)>, labels: Vec<(String, Vec<String>)>) -> PyResult<RecordBatch> {
     let mut fields = Vec::with_capacity(columns.len());
     let mut arrays: Vec<ArrayRef> = Vec::with_capacity(columns.len());
     for (name, values) in columns {
         fields.push(Field::new(name, DataType::Float64, false));
         arrays.push(Arc::new(Float64Array::new(values.into(), None)));
+    }
+    for (name, texts) in labels {
+        fields.push(Field::new(name, DataType::Utf8, false));
+        arrays.push(Arc::new(StringArray::from(texts)));
     }
     RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
         .map_err(|e| InternalError::new_err(format!("columns of a frame: {e}")))

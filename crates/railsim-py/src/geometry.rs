@@ -6,7 +6,6 @@ use railsim::contact::conicity::{Method, RadiusCurve};
 use railsim::contact::pair::{Pair, Roll};
 use railsim::contact::search::{Part, Patch, Pose, RailShift, Side, Touch};
 use railsim::dynamics::compile;
-use railsim::run::{Ended, Outcome};
 use railsim::schema::Case;
 
 use crate::arrow::Frame;
@@ -34,7 +33,7 @@ fn method_named(name: &str) -> PyResult<Method> {
 
 fn frame(columns: Vec<(&str, Vec<f64>)>) -> PyResult<Frame> {
     let columns = columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect();
-    Frame::new(Outcome { columns, ended: Ended::EndOfTrack, statistics: serde_json::json!({}) }, 0.0)
+    Frame::table(columns)
 }
 
 /// Rolling radius of the right wheel less that of the left at every shift.

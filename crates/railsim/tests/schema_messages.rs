@@ -364,7 +364,11 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             json!(0),
             "run.integrator.step: found 0 s; allowed: above 0, at most 0.05 s",
         ),
-        ("/run/kind", json!("tiem"), "run.kind: found \"tiem\"; allowed: \"time\" (did you mean time?)"),
+        (
+            "/run/kind",
+            json!("tiem"),
+            "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\" (did you mean time?)",
+        ),
         ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 m"),
         (
             "/track/rail_profile",
@@ -448,8 +452,8 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/spede",
             json!(3),
-            "run.spede: found an unknown key; allowed: creep, friction, gravity, integrator, kind, \
-         output_step, speed, wheel_profile (did you mean speed?)",
+            "run.spede: found an unknown key; allowed: contact, creep, friction, gravity, hold, integrator, kind, \
+         load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
         ),
     ]
 }

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from lmap.cli import channels, check, contact, list_, new, run, schema
+from lmap.cli import channels, check, contact, list_, modes, new, run, schema
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
@@ -49,6 +49,7 @@ app.command("channels")(channels.channels)
 app.command("check")(check.check)
 app.command("contact")(contact.contact)
 app.command("list")(list_.list_)
+app.command("modes")(modes.modes)
 app.command("new")(new.new)
 app.command("run")(run.run)
 app.command("schema")(schema.schema)

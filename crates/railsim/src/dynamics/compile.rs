@@ -11,6 +11,8 @@ use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::math::{Vec3, rotation};
+use crate::schema::run::SimpleContact;
+use crate::schema::track::TrackSupport;
 use crate::schema::{Case, Connection, Track, Vehicle};
 use crate::track::DeviationField;
 use crate::track::Layout;
@@ -59,7 +61,7 @@ pub fn model(case: &Case) -> Result<Model> {
         speed_hold,
         layout,
         deviation,
-        Some(support(track)),
+        support(track),
         contact,
         case.run.gravity,
     )?;
@@ -134,6 +136,9 @@ fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
 }
 
 fn contact(case: &Case) -> Result<Contact> {
+    if let Some(SimpleContact::Textbook(book)) = &case.run.contact {
+        return Ok(Contact::Textbook(*book));
+    }
     let settings = &case.vehicle.contact;
     let mass = case.vehicle.mass();
     let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
@@ -146,15 +151,15 @@ fn contact(case: &Case) -> Result<Contact> {
     })
 }
 
-fn support(track: &Track) -> Support {
-    let s = &track.support;
+fn support(track: &Track) -> Option<Support> {
+    let TrackSupport::Lumped(s) = &track.support else { return None };
     let lever = s.half_base * s.half_base;
-    Support {
+    Some(Support {
         mass: s.mass,
         inertia: s.Ixx,
         stiffness: [s.ky, s.kz, s.kz * lever],
         damping: [s.cy, s.cz, s.cz * lever],
-    }
+    })
 }
 
 /// The equations of a wheelset hold for one that is round.

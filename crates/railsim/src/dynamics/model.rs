@@ -258,6 +258,12 @@ impl Model {
         (0..self.count()).filter(|i| !self.guided.contains(i)).map(|i| self.rigid(i).mass).sum()
     }
 
+    /// Whether nothing fixes the vehicle's place along the track: neither a speed hold nor a guided body.
+    #[must_use]
+    pub fn place_is_free(&self) -> bool {
+        self.speed_hold.is_none() && self.guided.is_empty() && self.count() > 0
+    }
+
     /// The body whose place is called the vehicle's: the one that the speed is held on, else the first.
     #[must_use]
     pub fn reference(&self) -> usize {

@@ -2,6 +2,7 @@
 
 pub mod angle;
 pub mod cube_root;
+pub mod eigen;
 pub mod elliptic;
 pub mod fft;
 pub mod hermite;

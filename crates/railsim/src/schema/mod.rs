@@ -10,10 +10,11 @@ mod check;
 mod document;
 mod node;
 mod parameter;
-mod run;
+pub mod run;
+mod run_check;
 mod template;
 mod toml_source;
-mod track;
+pub mod track;
 mod vehicle;
 mod written;
 
