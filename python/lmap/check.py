@@ -212,14 +212,14 @@ def _core() -> str:
     return core_version()
 
 
-def report_folder(given: str | Path, key: str = "--report") -> Path:
+def report_folder(given: str | Path, option: str = "--report") -> Path:
     """The folder for a report, if it is one or can become one; asked before anything runs."""
     folder = Path(given)
     nearest = folder.absolute()
     try:
         if folder.exists() and not folder.is_dir():
             raise InputProblem(
-                Problem(key=(key,), found=f"{files.shown(folder)}, a file", allowed="a folder")
+                Problem(key=(option,), found=f"{files.shown(folder)}, a file", allowed="a folder")
             )
         while not nearest.exists():
             nearest = nearest.parent
@@ -228,18 +228,16 @@ def report_folder(given: str | Path, key: str = "--report") -> Path:
         writable = False
     if not writable:
         found = f"{files.shown(folder)}, where nothing can be written"
-        raise InputProblem(Problem(key=(key,), found=found, allowed="a folder"))
+        raise InputProblem(Problem(key=(option,), found=found, allowed="a folder"))
     return folder
 
 
 def write_page(path: Path, content: bytes) -> None:
     """One page, whole or not at all; its folder is made where it is missing."""
-    from lmap.report.embed import write_bytes
-
     created: list[Path] = []
     try:
         _make_folder(path.parent, created)
-        write_bytes(path, content)
+        files.write(path, content)
     except OSError as error:
         raise LmapError(
             f"the page cannot be written to {files.shown(path)}: {error.strerror or error}"

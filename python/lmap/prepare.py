@@ -212,7 +212,7 @@ def _profiles(
                 continue
             found[name] = (path, text)
             try:
-                points = contact.read_profile(text, name)
+                points = contact.profile_points(text, name)
             except InputProblem as error:
                 problems += [problem.at(file=files.shown(path)) for problem in error.problems]
                 continue
@@ -313,4 +313,14 @@ def vehicle_channels(name: str) -> list[Channel]:
         "output_step": 0.005,
     }
     track = {"length": 100.0}
-    return channels(vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track=track))
+    try:
+        return channels(vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track=track))
+    except InputProblem as error:
+        raise InputProblem(
+            [
+                located(problem, problem.key[1:], vehicle.document, {})
+                if problem.key[:1] == ("vehicle",)
+                else problem
+                for problem in error.problems
+            ]
+        ) from None

@@ -62,7 +62,8 @@ def modes(
 
     loaded = Vehicle.load(vehicle, overrides=overrides.parse(settings or []), condition=condition)
     default = None if out is None else f"5:{round(2 * 3.6 * loaded.data.design_speed)}:5"
-    speeds = speeds_of(speed_kmh or default or f"0,{3.6 * loaded.data.design_speed:g}")
+    usual = f"0,{3.6 * loaded.data.design_speed:g}" if default is None else default
+    speeds = speeds_of(usual if speed_kmh is None else speed_kmh)
     folder = None if out is None else _folder(out)
     frame = loaded.modes([v / 3.6 for v in speeds], friction=friction)
     if folder is not None:

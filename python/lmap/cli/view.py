@@ -58,7 +58,7 @@ def view(
     from lmap.vehicle import Vehicle
     from lmap.view import findings, resolved, scene
 
-    folder = report_folder(out, key="--out")
+    folder = report_folder(out, "--out")
     loaded = Vehicle.load(vehicle, overrides=overrides.parse(settings or []), condition=condition)
     model = resolved(loaded.data)
     speeds = speeds_of(speed_kmh or f"0,{3.6 * loaded.data.design_speed:g}")

@@ -16,13 +16,14 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from lmap import files
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
-from lmap.report.embed import plotly_js, put, script_json, write_bytes
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import write_parquet
 from lmap.report.scene import file_name, render_scene
+from lmap.report.sheet import plotly_js, script_json
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 
 _PLOTLY = "<script>/* plotly.js */</script>"
@@ -38,13 +39,13 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
     cases = root / "cases"
     cases.mkdir(parents=True, exist_ok=True)
     for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
-        write_bytes(cases / f"{case.hash}.json", case.case_json.encode())
-        put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+        files.write(cases / f"{case.hash}.json", case.case_json.encode())
+        files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
     for spec, name in _drawings(acceptance):
-        write_bytes(root / name, render_scene(spec.drawing or {}))
-    write_bytes(root / "index.html", render(acceptance))
-    write_bytes(root / "junit.xml", junit(acceptance).encode())
-    write_bytes(root / "verdicts.json", to_json(acceptance).encode())
+        files.write(root / name, render_scene(spec.drawing or {}))
+    files.write(root / "index.html", render(acceptance))
+    files.write(root / "junit.xml", junit(acceptance).encode())
+    files.write(root / "verdicts.json", to_json(acceptance).encode())
 
 
 def render(acceptance: Acceptance) -> bytes:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
-from lmap.report.embed import plotly_js, script_json
+from lmap.report.sheet import plotly_js, script_json
 
 _PLOTLY = "<script>/* plotly.js */</script>"
 
