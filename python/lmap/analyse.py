@@ -44,7 +44,7 @@ def vehicle_case(
     data = {}
     for profile, key in case.profile_names.items():
         path = first_place(profile, places)
-        points = contact.read_profile(files.read_text(path, "profile"), profile)
+        points = contact.profile_points(files.read_text(path, "profile"), profile)
         data[profile] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
     return case.with_profiles(data)
 

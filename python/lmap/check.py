@@ -204,14 +204,14 @@ def _core() -> str:
     return core_version()
 
 
-def report_folder(given: str | Path) -> Path:
+def report_folder(given: str | Path, option: str = "--report") -> Path:
     """The folder for a report, if it is one or can become one; asked before anything runs."""
     folder = Path(given)
     nearest = folder.absolute()
     try:
         if folder.exists() and not folder.is_dir():
             raise InputProblem(
-                Problem(key=("--report",), found=f"{files.shown(folder)}, a file", allowed="a folder")
+                Problem(key=(option,), found=f"{files.shown(folder)}, a file", allowed="a folder")
             )
         while not nearest.exists():
             nearest = nearest.parent
@@ -220,7 +220,7 @@ def report_folder(given: str | Path) -> Path:
         writable = False
     if not writable:
         found = f"{files.shown(folder)}, where nothing can be written"
-        raise InputProblem(Problem(key=("--report",), found=found, allowed="a folder"))
+        raise InputProblem(Problem(key=(option,), found=found, allowed="a folder"))
     return folder
 
 

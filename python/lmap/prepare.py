@@ -185,7 +185,7 @@ def _profiles(
                 continue
             found[name] = (path, text)
             try:
-                points = contact.read_profile(text, name)
+                points = contact.profile_points(text, name)
             except InputProblem as error:
                 problems += [problem.at(file=files.shown(path)) for problem in error.problems]
                 continue
@@ -285,5 +285,15 @@ def vehicle_channels(name: str) -> list[Channel]:
         "integrator": {"kind": "heun", "step": 0.001},
         "output_step": 0.005,
     }
-    track = {"length": 100.0}
-    return channels(vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track=track))
+    case = vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track={"length": 100.0})
+    try:
+        return channels(case)
+    except InputProblem as error:
+        raise InputProblem(
+            [
+                located(problem, problem.key[1:], vehicle.document, {})
+                if problem.key[:1] == ("vehicle",)
+                else problem
+                for problem in error.problems
+            ]
+        ) from None

@@ -64,3 +64,16 @@ def test_ctrl_c_stops_the_core_within_a_second_and_leaves_nothing(tmp_path: Path
         assert time.perf_counter() - start < 1.0
         assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_the_whole_check_stays_under_300_mebibytes(tmp_path: Path) -> None:
+    arguments = command("check", "hunting", "--quiet", "--jobs", "1", "--report", "out")
+    with (tmp_path / "log").open("w", encoding="utf-8") as log:
+        process = subprocess.Popen(arguments, cwd=tmp_path, env=ENVIRONMENT, stdout=log, stderr=log)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode == 0, (tmp_path / "log").read_text(encoding="utf-8")
+    # KiB, but bytes on macOS
+    peak = usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    assert peak < 300 * 2**20, f"{peak / 2**20:.0f} MiB"

@@ -129,6 +129,12 @@ def test_a_key_that_is_set_twice_is_refused(settings: list[str]) -> None:
         overrides.parse(settings)
 
 
+def test_two_ways_of_writing_the_speed_are_refused() -> None:
+    with pytest.raises(InputProblem, match=r"run\.speed.*run\.speed_kmh"):
+        overrides.checked({"run.speed": 30.0, "run.speed_kmh": 100.0})
+    assert overrides.checked({"run.speed_kmh": 100.0}) == {"run.speed_kmh": 100.0}
+
+
 def test_a_setting_that_is_not_finite_is_refused() -> None:
     with pytest.raises(InputProblem, match="--set a: found nan; allowed: a finite number"):
         overrides.parse(["a=nan"])

@@ -64,8 +64,8 @@ def test_the_papers_ramp_down_and_what_it_hangs_on(compare: Compare) -> None:
 
 
 def test_limit_cycles_end_between_the_ramps_and_the_linear_critical_speed() -> None:
-    """Stepped down from hunting, the limit cycle outlives the linear critical speed by little; what a ramp reads lower is
-    the time that it takes to die away."""
+    """Stepped down from hunting, the limit cycle ends a little below the linear critical speed; what a ramp reads
+    lower still is the time that it takes to die away."""
     diagram = case(
         "bifurcation",
         speed=250 / 3.6,
@@ -77,5 +77,4 @@ def test_limit_cycles_end_between_the_ramps_and_the_linear_critical_speed() -> N
         },
     )
     ramp_reading, fold = readings([ramp(2.5), diagram])
-    print(f"ramp-down at 2.5 km/h/s {ramp_reading:.1f}, lowest limit cycle {fold:.1f} km/h")
     assert ramp_reading < fold < 190.0

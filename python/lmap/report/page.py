@@ -8,20 +8,21 @@ name and then renamed, so that a reader never meets half a file; `verdicts.json`
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from lmap import files
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import write_parquet
+from lmap.report.sheet import plotly_js, script_json
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 
 _PLOTLY = "<script>/* plotly.js */</script>"
@@ -37,11 +38,11 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
     cases = root / "cases"
     cases.mkdir(parents=True, exist_ok=True)
     for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
-        _write(cases / f"{case.hash}.json", case.case_json.encode())
-        _put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
-    _write(root / "index.html", render(acceptance))
-    _write(root / "junit.xml", junit(acceptance).encode())
-    _write(root / "verdicts.json", to_json(acceptance).encode())
+        files.write(cases / f"{case.hash}.json", case.case_json.encode())
+        files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+    files.write(root / "index.html", render(acceptance))
+    files.write(root / "junit.xml", junit(acceptance).encode())
+    files.write(root / "verdicts.json", to_json(acceptance).encode())
 
 
 def render(acceptance: Acceptance) -> bytes:
@@ -64,7 +65,7 @@ def render(acceptance: Acceptance) -> bytes:
     before, place, after = page.partition(_PLOTLY)
     if not place:
         raise ValueError(f"the page's template has no {_PLOTLY}")
-    return b"".join((before.encode(), b"<script>", _plotly_js(), b"</script>", after.encode()))
+    return b"".join((before.encode(), b"<script>", plotly_js(), b"</script>", after.encode()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +191,7 @@ def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
                 "badge_class": _class(figure.badge or ""),
                 "cases": list(dict.fromkeys(view.case for view in figure.views)),
                 "stretches": list(dict.fromkeys(view.stretch for view in figure.views)),
-                "json": _script_json(views),
+                "json": script_json(views),
             }
         )
     return shown
@@ -226,22 +227,6 @@ def _folded(value: Any) -> Any:
     return value
 
 
-def _script_json(value: Any) -> Any:
-    """JSON that may stand in a script element: nothing in it can end the element or open a comment."""
-    from markupsafe import Markup
-
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    for character in "<>&\u2028\u2029":
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    return Markup(text)
-
-
-def _plotly_js() -> bytes:
-    """The library as the plotly package brings it, without importing that package's Python."""
-    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
-    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
-
-
 def _class(verdict: str) -> str:
     """A class of the style sheet: `not-assessed`."""
     return verdict.lower().replace(" ", "-")
@@ -249,17 +234,3 @@ def _class(verdict: str) -> str:
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def _write(path: Path, content: bytes) -> None:
-    _put(path, lambda temporary: temporary.write_bytes(content))
-
-
-def _put(path: Path, write: Callable[[Path], object]) -> None:
-    """All of it or nothing, also when the disk is full or the program is stopped."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        write(temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -8,7 +8,15 @@ import math
 import re
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from lmap.criteria.chain import Criterion
 
@@ -81,6 +89,11 @@ def _names(value: Any) -> list[str]:
     return names
 
 
+def _friction(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    """A number; or a table (per rail, along the track, with the slip velocity), which is the core's to check."""
+    return value if isinstance(value, dict) else number(value)
+
+
 class RunPart(BaseModel):
     """`[run]`: what procedures expand; the rest is the core's and kept as it is."""
 
@@ -93,7 +106,9 @@ class RunPart(BaseModel):
     wheel_profile: Annotated[
         list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
     ] = None
-    friction: float | None = Field(default=None, ge=0.0, allow_inf_nan=False, strict=True)
+    friction: Annotated[
+        float | None, Field(ge=0.0, allow_inf_nan=False, strict=True), WrapValidator(_friction)
+    ] = None
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:

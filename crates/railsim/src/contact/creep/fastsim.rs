@@ -26,7 +26,8 @@ use std::f64::consts::PI;
 /// **Speed.** Strips of one patch or of several are marched side by side in blocks of [`LANES`], so that the compiler puts them into
 /// vector lanes; where the processor has AVX2 (found at run time) four to a register, else two. No path fuses a multiplication with an
 /// addition and each strip has its own lane: the bytes do not depend on the path, nor on which patches share a block. Every element
-/// costs a division and a square root, whose unit is the floor: some 200 ns for 10 x 10 at 2.5 GHz with AVX2. AVX-512 divides no faster.
+/// costs a division and a square root, whose unit is the floor: some 200 ns for 10 x 10 at 2.5 GHz with AVX2. AVX-512 divides no faster,
+/// and a root by Newton's iteration without a division is slower.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fastsim {
@@ -51,6 +52,8 @@ impl Default for Fastsim {
 
 /// Strips that are marched together: two patches of ten, five registers of four.
 const LANES: usize = 20;
+/// The same for what is left over: one patch of ten in three registers.
+const FEW: usize = 12;
 
 /// What is the same for all strips of a patch.
 #[derive(Clone, Copy)]
@@ -71,21 +74,21 @@ impl March {
 }
 
 /// Strips side by side, each with its patch's numbers; an empty lane is all zero.
-struct Block {
+struct Block<const L: usize> {
     /// Relative lateral position y/b of each strip, within -1..1.
-    y: [f64; LANES],
-    px: [f64; LANES],
-    py: [f64; LANES],
-    sx: [f64; LANES],
-    sy: [f64; LANES],
-    bound: [f64; LANES],
+    y: [f64; L],
+    px: [f64; L],
+    py: [f64; L],
+    sx: [f64; L],
+    sy: [f64; L],
+    bound: [f64; L],
     /// Sums of the stress along each strip times its half-length, x and y.
-    sum: [[f64; LANES]; 2],
+    sum: [[f64; L]; 2],
 }
 
-impl Block {
+impl<const L: usize> Block<L> {
     const EMPTY: Self = {
-        let none = [0.0; LANES];
+        let none = [0.0; L];
         Self { y: none, px: none, py: none, sx: none, sy: none, bound: none, sum: [none; 2] }
     };
 
@@ -102,12 +105,12 @@ impl Block {
     /// Marches every strip from its leading to its trailing edge in `nx` elements.
     #[inline(always)]
     fn march(&mut self, nx: u16) {
-        let mut half = [0.0; LANES]; // a(y)/a
-        let mut ax = [0.0; LANES];
-        let mut ay = [0.0; LANES];
-        let mut ey = [0.0; LANES];
-        let mut limit = [0.0; LANES];
-        for l in 0..LANES {
+        let mut half = [0.0; L]; // a(y)/a
+        let mut ax = [0.0; L];
+        let mut ay = [0.0; L];
+        let mut ey = [0.0; L];
+        let mut limit = [0.0; L];
+        for l in 0..L {
             let square = 1.0 - self.y[l] * self.y[l];
             half[l] = square.sqrt();
             ax[l] = half[l] * (self.px[l] - self.sx[l] * self.y[l]);
@@ -116,40 +119,30 @@ impl Block {
             limit[l] = self.bound[l] * square;
         }
         let step = 2.0 / f64::from(nx);
-        let mut qx = [0.0; LANES];
-        let mut qy = [0.0; LANES];
-        let mut tx = [0.0; LANES];
-        let mut ty = [0.0; LANES];
+        let mut qx = [0.0; L];
+        let mut qy = [0.0; L];
+        let mut tx = [0.0; L];
+        let mut ty = [0.0; L];
         for i in 0..nx {
             // x/a(y) at the element's middle, and halfway between it and the middle before (the leading edge for the first)
             let x = 1.0 - step * (f64::from(i) + 0.5);
             let (h, middle) = if i == 0 { (0.5 * step, 1.0 - 0.25 * step) } else { (step, x + 0.5 * step) };
             let parabola = 1.0 - x * x;
-            let mut ratio = [0.0; LANES];
-            let mut slides = [0_u64; LANES];
-            for l in 0..LANES {
-                qx[l] -= h * ax[l];
-                qy[l] -= h * (ay[l] + ey[l] * middle);
+            for l in 0..L {
+                let px = qx[l] - h * ax[l];
+                let py = qy[l] - h * (ay[l] + ey[l] * middle);
                 let g = limit[l] * parabola;
-                ratio[l] = g * g;
-                slides[l] = u64::from(qx[l] * qx[l] + qy[l] * qy[l] > ratio[l]);
-            }
-            // Where every strip still sticks the factor is 1 in all of them: division and root are most of the cost.
-            if slides.iter().fold(0, |any, lane| any | lane) != 0 {
-                for l in 0..LANES {
-                    // g/|p_H|, cut at 1; the tiny number keeps 0/0 out
-                    let square = ratio[l] / (qx[l] * qx[l] + qy[l] * qy[l] + f64::MIN_POSITIVE);
-                    let scale = if square < 1.0 { square.sqrt() } else { 1.0 };
-                    qx[l] *= scale;
-                    qy[l] *= scale;
-                }
-            }
-            for l in 0..LANES {
+                // g/|p_H|, cut at 1; the tiny number keeps 0/0 out. No branch around it: to skip the division where every strip
+                // sticks was tried, and costs more in broken-up loops than it saves.
+                let ratio = g * g / (px * px + py * py + f64::MIN_POSITIVE);
+                let scale = if ratio < 1.0 { ratio.sqrt() } else { 1.0 };
+                qx[l] = px * scale;
+                qy[l] = py * scale;
                 tx[l] += qx[l];
                 ty[l] += qy[l];
             }
         }
-        for l in 0..LANES {
+        for l in 0..L {
             self.sum[0][l] = half[l] * tx[l];
             self.sum[1][l] = half[l] * ty[l];
         }
@@ -241,6 +234,52 @@ impl Grid {
     }
 }
 
+/// The strips of several patches, one after the other.
+struct Strips<'a> {
+    grid: &'a Grid,
+    cases: &'a [CreepCase],
+    /// Strips of a patch.
+    each: usize,
+    /// Strips that are not marched yet.
+    left: usize,
+    /// The next one: of which case, which of its strips.
+    case: usize,
+    strip: usize,
+    march: March,
+}
+
+impl<'a> Strips<'a> {
+    fn new(grid: &'a Grid, cases: &'a [CreepCase], each: usize) -> Self {
+        let march = cases.first().map_or(March::NONE, |c| grid.march(c));
+        Self { grid, cases, each, left: each * cases.len(), case: 0, strip: 0, march }
+    }
+
+    /// Marches the next `L` strips, or what is left, and adds their sums to the forces of their patches, in the order of the strips.
+    fn block<const L: usize>(&mut self, nx: u16, forces: &mut [CreepForce]) {
+        let mut block = Block::<L>::EMPTY;
+        let (mut case, mut strip) = (self.case, self.strip);
+        let filled = L.min(self.left);
+        for l in 0..filled {
+            block.set(l, -1.0 + self.grid.width * (self.strip as f64 + 0.5), &self.march);
+            self.strip += 1;
+            if self.strip == self.each {
+                (self.case, self.strip) = (self.case + 1, 0);
+                self.march = self.cases.get(self.case).map_or(March::NONE, |c| self.grid.march(c));
+            }
+        }
+        self.left -= filled;
+        block.march_best(nx);
+        for l in 0..filled {
+            forces[case].fx += block.sum[0][l];
+            forces[case].fy += block.sum[1][l];
+            strip += 1;
+            if strip == self.each {
+                (case, strip) = (case + 1, 0);
+            }
+        }
+    }
+}
+
 impl Fastsim {
     /// Force on the wheel of one patch.
     #[must_use]
@@ -258,32 +297,12 @@ impl Fastsim {
         assert_eq!(cases.len(), forces.len(), "one force per case");
         let grid = Grid::new(self);
         forces.fill(CreepForce::default());
-        let strips = usize::from(self.ny);
-        let total = strips * cases.len();
-        // The next strip: of which case, which of its strips.
-        let (mut case, mut strip) = (0, 0);
-        let mut march = cases.first().map_or(March::NONE, |c| grid.march(c));
-        for first in (0..total).step_by(LANES) {
-            let filled = LANES.min(total - first);
-            let mut block = Block::EMPTY;
-            let (mut lane_case, mut lane_strip) = (case, strip);
-            for l in 0..filled {
-                block.set(l, -1.0 + grid.width * (strip as f64 + 0.5), &march);
-                strip += 1;
-                if strip == strips {
-                    (case, strip) = (case + 1, 0);
-                    march = cases.get(case).map_or(March::NONE, |c| grid.march(c));
-                }
-            }
-            block.march_best(self.nx);
-            for l in 0..filled {
-                forces[lane_case].fx += block.sum[0][l];
-                forces[lane_case].fy += block.sum[1][l];
-                lane_strip += 1;
-                if lane_strip == strips {
-                    (lane_case, lane_strip) = (lane_case + 1, 0);
-                }
-            }
+        let mut strips = Strips::new(&grid, cases, usize::from(self.ny));
+        while strips.left > FEW {
+            strips.block::<LANES>(self.nx, forces);
+        }
+        if strips.left > 0 {
+            strips.block::<FEW>(self.nx, forces);
         }
         for (force, case) in forces.iter_mut().zip(cases) {
             let area = grid.area * case.patch.a * case.patch.b;
@@ -361,7 +380,7 @@ mod tests {
     fn the_path_changes_no_bit() {
         let grid = Grid::new(&Fastsim::default());
         for (k, case) in cases().iter().enumerate() {
-            let (mut best, mut any) = (Block::EMPTY, Block::EMPTY);
+            let (mut best, mut any) = (Block::<LANES>::EMPTY, Block::<LANES>::EMPTY);
             for l in 0..LANES {
                 let y = -0.95 + 0.097 * l as f64;
                 best.set(l, y, &grid.march(case));
