@@ -54,7 +54,8 @@ class _Fault(TypedDict):
     line: int | None  # from 1; known only where TOML was read
 
 class _Ended(TypedDict):
-    kind: Literal["end_of_track", "complete", "diverged", "computed"]  # the last: a table that is no run's
+    # the last: a table that is no run's
+    kind: Literal["end_of_track", "complete", "diverged", "computed"]
     t: float | None  # s; of the last row, or of the divergence
     s: float | None  # m
     message: str | None

@@ -312,9 +312,9 @@ def vehicle_channels(name: str) -> list[Channel]:
         "integrator": {"kind": "heun", "step": 0.001},
         "output_step": 0.005,
     }
-    track = {"length": 100.0}
+    case = vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track={"length": 100.0})
     try:
-        return channels(vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track=track))
+        return channels(case)
     except InputProblem as error:
         raise InputProblem(
             [

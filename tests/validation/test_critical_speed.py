@@ -63,11 +63,12 @@ def test_the_papers_ramp_down_and_what_it_hangs_on(compare: Compare) -> None:
     compare("linear against 5 km/h/s, km/h", found[4], found[1], 60.0, "ours")
 
 
-def test_limit_cycles_end_where_the_ramps_tend_to(compare: Compare) -> None:
-    """Stepped down, the limit cycle ends between the slow ramp's reading and the linear critical speed."""
+def test_limit_cycles_end_between_the_ramps_and_the_linear_critical_speed() -> None:
+    """Stepped down from hunting, the limit cycle ends a little below the linear critical speed; what a ramp reads
+    lower still is the time that it takes to die away."""
     diagram = case(
         "bifurcation",
-        speed=200 / 3.6,
+        speed=250 / 3.6,
         search={
             "method": "bifurcation",
             "end_speed": 150 / 3.6,
@@ -75,5 +76,5 @@ def test_limit_cycles_end_where_the_ramps_tend_to(compare: Compare) -> None:
             "disturbance": {"carbody.y": 0.02},
         },
     )
-    [fold] = readings([diagram])
-    compare("bifurcation, lowest speed that hunts, km/h", fold, 170.0, 10.0, "ours at 5 km/h steps")
+    ramp_reading, fold = readings([ramp(2.5), diagram])
+    assert ramp_reading < fold < 190.0

@@ -10,6 +10,7 @@ use railsim::math::Vec3;
 use railsim::run::{Ended, Free, Outcome};
 use serde_json::{Value, json};
 
+#[allow(clippy::print_stdout)] // ours beside theirs
 fn compare(what: &str, ours: f64, theirs: f64, tolerance: f64) {
     let off = ours / theirs - 1.0;
     println!("{what}: ours {ours:.6}, theirs {theirs:.6} ({:+.3} %)", 100.0 * off);

@@ -19,6 +19,7 @@ use railsim::track::{DeviationField, Layout};
 use serde_json::{Value, json};
 
 /// Prints ours beside theirs and fails beyond `tolerance`, a share.
+#[allow(clippy::print_stdout)] // ours beside theirs
 fn compare(what: &str, ours: f64, theirs: f64, tolerance: f64) {
     let off = ours / theirs - 1.0;
     println!("{what}: ours {ours:.6}, theirs {theirs:.6} ({:+.4} %)", 100.0 * off);
