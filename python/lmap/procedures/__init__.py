@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from lmap.procedures import hunting, view
+from lmap.procedures import hunting, modes, view
 from lmap.procedures.base import CaseFigures, Look, Looking, Procedure
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (hunting, view)
+PROCEDURES: tuple[Procedure, ...] = (hunting, modes, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
