@@ -40,7 +40,7 @@ class _Fault(TypedDict):
     line: int | None  # from 1; known only where TOML was read
 
 class _Ended(TypedDict):
-    kind: Literal["end_of_track", "diverged"]
+    kind: Literal["end_of_track", "complete", "diverged"]
     t: float | None  # s; of the last row, or of the divergence
     s: float | None  # m
     message: str | None

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from lmap import contact, files, procedures, toml
+from lmap.analyse import first_place, vehicle_case
 from lmap.criteria.chain import signal_problems
 from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
 from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Procedure
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
-from lmap.spec.case import Case, build, merged
+from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
 from lmap.spec.model import Spec
 from lmap.vehicle import Vehicle, located
@@ -177,7 +178,7 @@ def _profiles(
             if name in data:
                 continue
             try:
-                path = _first(name, places)
+                path = first_place(name, places)
                 text = files.read_text(path, "profile")
             except InputProblem as error:
                 problems += [p if p.file else loaded.locate(p.at(prefix=key)) for p in error.problems]
@@ -192,18 +193,6 @@ def _profiles(
     if problems:
         raise InputProblem(problems)
     return found, data
-
-
-def _first(name: str, places: Sequence[Path]) -> Path:
-    """A profile seen from the first place that has it."""
-    failure: InputProblem | None = None
-    for place in places:
-        try:
-            return files.find(files.PROFILE, name, place)
-        except InputProblem as error:
-            failure = failure or error
-    assert failure is not None  # places is never empty
-    raise failure
 
 
 def _checked(cases: Sequence[Case], sources: _Sources, procedure: Procedure) -> dict[str, Channel]:
@@ -290,24 +279,11 @@ def load_case(path: Path) -> Case:
 def vehicle_channels(name: str) -> list[Channel]:
     """The channels that a vehicle's runs record: those of a short case on its own base track."""
     vehicle = Vehicle.load(name)
-    track: dict[str, Any] = {"length": 100.0}
-    base: toml.Document | None = None
-    if vehicle.data.track is not None:
-        base = toml.load(files.find(files.TRACK, vehicle.data.track, vehicle.document.path), "track")
-        track = merged(base.data.get("track", base.data), track)
     run = {
         "kind": "time",
         "speed": vehicle.data.design_speed,
-        "friction": 0.4,
-        "wheel_profile": vehicle.data.wheel_profile,
         "integrator": {"kind": "heun", "step": 0.001},
         "output_step": 0.005,
     }
-    case = build(label="channels", vehicle=vehicle.data, track=track, run=run)
-    places = [vehicle.document.path, *([base.path] if base is not None else [])]
-    data = {}
-    for profile, key in case.profile_names.items():
-        path = _first(profile, places)
-        points = contact.read_profile(files.read_text(path, "profile"), profile)
-        data[profile] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
-    return channels(case.with_profiles(data))
+    track = {"length": 100.0}
+    return channels(vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track=track))

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from lmap import files, toml
 from lmap.errors import InputProblem, KeyPath, Problem
 from lmap.spec.case import VehicleData
+
+if TYPE_CHECKING:
+    import polars as pl
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +23,7 @@ class Vehicle:
 
     locomotive = Vehicle.load("coco134")
     locomotive.data.design_speed           # m/s
+    locomotive.modes(32.0)                 # frame of modes, rolling at 32 m/s
     soft = locomotive.resolve({"secondary.kz": 5e5}, condition="tare")
     """
 
@@ -42,6 +46,16 @@ class Vehicle:
         place = Path.cwd() if beside is None else Path(beside)
         document = toml.load(files.find(files.VEHICLE, str(name), place), "vehicle")
         return cls(document, _resolve(document, overrides or {}, condition))
+
+    def modes(self, speed: float | Sequence[float] = 0.0, *, friction: float = 0.4) -> pl.DataFrame:
+        """Eigenvalues, names and shapes of the vehicle's modes on its own base track at a speed or at several, m/s.
+
+        A row for each mode at each speed, as `lmap.analyse.modes` says; 0 stands with wheels that stick.
+        """
+        from lmap.analyse import modes
+
+        speeds = [float(speed)] if isinstance(speed, int | float) else [float(v) for v in speed]
+        return modes(self.data, self.document.path, speeds, friction=friction)
 
     def resolve(self, overrides: Mapping[str, Any] | None = None, condition: str | None = None) -> Self:
         """The same file with named parameters overridden and an operating condition applied."""

@@ -139,7 +139,7 @@ class CaseResult:
     quantities: pl.DataFrame
     """What the criteria judged: the frame, or what the procedure computed from it. Plot from this one."""
     ended: Mapping[str, Any]
-    """How the run ended: `kind` (`end_of_track` or `diverged`), `t`, `s`, `message`."""
+    """How the run ended: `kind` (`end_of_track`, `complete` or `diverged`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any]
     units: Mapping[str, str]
     """Unit by column of `quantities`."""
@@ -149,7 +149,7 @@ class CaseResult:
     @property
     def complete(self) -> bool:
         """Whether the run reached its end."""
-        return self.ended.get("kind") == "end_of_track"
+        return self.ended.get("kind") in ("end_of_track", "complete")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
-use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchIterator};
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchIterator, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict};
@@ -35,6 +35,9 @@ impl Frame {
             Ended::EndOfTrack => {
                 json!({"kind": "end_of_track", "t": last("t"), "s": last("s"), "message": null})
             }
+            Ended::Complete => {
+                json!({"kind": "complete", "t": last("t"), "s": last("s"), "message": null})
+            }
             Ended::Diverged(error) => {
                 let (t, s) = match error {
                     railsim::Error::Diverged { t, s, .. } => (Some(*t), Some(*s)),
@@ -48,6 +51,10 @@ impl Frame {
         for (name, values) in outcome.columns {
             fields.push(Field::new(name, DataType::Float64, false));
             arrays.push(Arc::new(Float64Array::new(values.into(), None)));
+        }
+        for (name, texts) in outcome.labels {
+            fields.push(Field::new(name, DataType::Utf8, false));
+            arrays.push(Arc::new(StringArray::from(texts)));
         }
         let batch = RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
             .map_err(|e| InternalError::new_err(format!("columns of a frame: {e}")))?;

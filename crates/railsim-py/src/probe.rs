@@ -53,6 +53,7 @@ fn rows(ended: Ended) -> Outcome {
     let s = t.iter().map(|t| 4.0 * t).collect();
     Outcome {
         columns: vec![("t".into(), t), ("s".into(), s), ("carbody.y".into(), vec![-0.0, 1e-300, 0.1])],
+        labels: Vec::new(),
         ended,
         statistics: json!({"steps": 3}),
     }

@@ -5,7 +5,8 @@ use std::num::NonZeroUsize;
 
 use pyo3::prelude::*;
 use railsim::KeyPath;
-use railsim::run::{self, Outcome};
+use railsim::analysis;
+use railsim::run::Outcome;
 use railsim::schema::Case;
 use railsim::track::irregularity::DeviationField;
 
@@ -35,7 +36,7 @@ pub fn check_case(py: Python<'_>, case_json: &str) -> PyResult<()> {
 #[pyfunction]
 pub fn channels(py: Python<'_>, case_json: &str) -> PyResult<Vec<(String, &'static str, &'static str)>> {
     let case = read(py, case_json)?;
-    let channels = run::channels(&case).map_err(|e| raise(py, e))?;
+    let channels = analysis::channels(&case).map_err(|e| raise(py, e))?;
     Ok(channels.into_iter().map(|c| (c.name, c.unit, c.meaning)).collect())
 }
 
@@ -66,7 +67,7 @@ pub fn run_cases(
         py,
         cases.len(),
         jobs,
-        |index, control| run::simulate(&Case::from_json(&cases[index])?, control),
+        |index, control| analysis::run(&Case::from_json(&cases[index])?, control),
         &mut Callbacks { on_progress, on_done },
     )
 }

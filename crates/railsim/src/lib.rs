@@ -13,6 +13,7 @@
 
 #![warn(clippy::unwrap_used)] // never on what a user wrote; tests may
 
+pub mod analysis;
 pub mod body;
 pub mod connection;
 pub mod contact;

@@ -94,8 +94,8 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "kind = \"bushing\"",
         "kind = \"bushin\"",
-        "52: vehicle.template.axle.connection[0].kind: found \"bushin\"; allowed: \"bushing\", \
-         \"point_damper\", \"point_spring\" (did you mean bushing?)",
+        "52: vehicle.template.axle.connection[0].kind: found \"bushin\"; allowed: \"anti_roll_bar\", \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \
+         \"friction_plate\", \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" (did you mean bushing?)",
     ),
     (
         "between = [\"{axle}\", \"frame\"]",
@@ -237,11 +237,11 @@ fn all_faults_are_said_at_once_and_each_once() {
     assert_eq!(
         said(&text, Some("empty")),
         [
-            "52: vehicle.template.axle.connection[0].kind: found \"spring\"; allowed: \"bushing\", \"point_damper\", \
-             \"point_spring\" (did you mean point_spring?)",
+            "52: vehicle.template.axle.connection[0].kind: found \"spring\"; allowed: \"anti_roll_bar\", \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \
+         \"friction_plate\", \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" (did you mean point_spring?)",
             "67: vehicle.contact.poisson: found true; allowed: a number >= 0 and < 0.5",
             "3: vehicle.titel: found an unknown key; allowed: body, condition, connection, contact, design_condition, \
-             design_speed_kmh, dynamic_brake, name, outline, parameters, sensor, speed_hold, template, title, track, \
+             design_speed_kmh, dynamic_brake, equipment, include, load_case, name, outline, parameters, sensor, shape, speed_hold, template, title, track, \
              traction, use, wheel_profile, wheelset (did you mean title?)",
             "44: vehicle.template.axle.wheelset[0].mass: found 0 (from $axle.mass); allowed: a number > 0 kg",
             "?: vehicle.title: found nothing; allowed: a text",
@@ -356,7 +356,11 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             json!(0),
             "run.integrator.step: found 0 s; allowed: above 0, at most 0.05 s",
         ),
-        ("/run/kind", json!("tiem"), "run.kind: found \"tiem\"; allowed: \"time\" (did you mean time?)"),
+        (
+            "/run/kind",
+            json!("tiem"),
+            "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\" (did you mean time?)",
+        ),
         ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 m"),
         (
             "/track/rail_profile",
@@ -439,8 +443,8 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/spede",
             json!(3),
-            "run.spede: found an unknown key; allowed: creep, friction, gravity, integrator, kind, \
-         output_step, speed, wheel_profile (did you mean speed?)",
+            "run.spede: found an unknown key; allowed: contact, creep, friction, gravity, hold, integrator, kind, \
+         load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
         ),
     ]
 }

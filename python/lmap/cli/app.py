@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from lmap.cli import channels, check, list_, run
+from lmap.cli import channels, check, list_, modes, run
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
@@ -48,6 +48,7 @@ def _main(
 app.command("channels")(channels.channels)
 app.command("check")(check.check)
 app.command("list")(list_.list_)
+app.command("modes")(modes.modes)
 app.command("run")(run.run)
 
 

@@ -15,6 +15,8 @@ from lmap.execute.progress import Progress
 from lmap.spec.case import Case
 
 END_OF_TRACK = "end_of_track"
+COMPLETE = "complete"
+"""An analysis gave all its rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +26,14 @@ class CaseOutcome:
     frame: pl.DataFrame | None
     """The channels, up to where the run ended; nothing where it never started."""
     ended: Mapping[str, Any]
-    """`kind` (`end_of_track`, `diverged` or `error`), `t`, `s`, `message`."""
+    """`kind` (`end_of_track`, `complete`, `diverged` or `error`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any] = field(default_factory=dict)
     wall_s: float = 0.0
 
     @property
     def complete(self) -> bool:
         """Whether the run reached its end."""
-        return self.ended.get("kind") == END_OF_TRACK
+        return self.ended.get("kind") in (END_OF_TRACK, COMPLETE)
 
     @property
     def trouble(self) -> str | None:

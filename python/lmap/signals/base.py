@@ -85,11 +85,20 @@ class Statistic(Link):
         return False
 
 
+COUNTED = ("step", "mode", "critical_speed")
+"""A frame with one of these and without `t` is an analysis: its rows are counted."""
+
+
 def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFrame:
     """The channel `name` of a frame as a signal; refuses what is missing, empty, no number or not finite.
 
-    Rows that are not evenly spaced in time are refused too: some are missing.
+    Rows that are not evenly spaced in time are refused too: some are missing. Where rows are load steps, modes
+    or speeds instead, their number stands for the time.
     """
+    if "t" not in frame.columns and any(column in frame.columns for column in COUNTED):
+        frame = frame.with_columns(t=pl.int_range(pl.len()).cast(pl.Float64))
+        if "s" not in frame.columns:
+            frame = frame.with_columns(s=pl.lit(0.0))
     for column in ("t", "s", name):
         if column not in frame.columns:
             raise JudgementProblem(f"the frame has no channel {column}")

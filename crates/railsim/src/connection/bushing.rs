@@ -17,9 +17,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ForceLaw, Mount, Relative, Wrench, not_negative};
+use super::{ForceLaw, Mount, Relative, Wrench, carry, coincident, not_negative};
 use crate::error::{Fault, KeyPath};
-use crate::math::Vec3;
+use crate::math::{Mat3, Vec3};
 
 /// Stiffness and damping along the bodies' x, y, z; rotational about them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -105,7 +105,7 @@ impl Bushing {
 
 impl ForceLaw for Bushing {
     #[inline]
-    fn wrench(&self, motion: &Relative, mount: &Mount) -> Wrench {
+    fn wrench(&self, motion: &Relative, mount: &Mount, _memory: &[f64]) -> Wrench {
         let mut wrench = translational(&Vec3::from(self.stiffness), &Vec3::from(self.damping), motion, mount);
         if let Some(k) = &self.rotational_stiffness {
             wrench.m -= scale(k, &turned(motion));
@@ -116,7 +116,7 @@ impl ForceLaw for Bushing {
         wrench
     }
 
-    fn energy(&self, motion: &Relative, mount: &Mount) -> f64 {
+    fn energy(&self, motion: &Relative, mount: &Mount, _memory: &[f64]) -> f64 {
         let s = Self::stretch(motion, mount);
         let half = |d: &Vec3| 0.5 * (0.5 * d.dot(&scale(&self.stiffness, d)) - mount.preload.dot(d));
         let turn = turned(motion);
@@ -124,15 +124,24 @@ impl ForceLaw for Bushing {
         half(&s.d_A) + half(&s.d_B) + 0.5 * turn.dot(&scale(&k, &turn))
     }
 
-    fn dissipation(&self, motion: &Relative, mount: &Mount) -> f64 {
+    fn dissipation(&self, motion: &Relative, mount: &Mount, _memory: &[f64]) -> f64 {
         let s = Self::stretch(motion, mount);
         let lost = |rate: &Vec3| 0.5 * rate.dot(&scale(&self.damping, rate));
         let c = self.rotational_damping.unwrap_or_default();
         lost(&s.rate_A) + lost(&s.rate_B) + motion.w_AB.dot(&scale(&c, &motion.w_AB))
     }
 
-    fn nominal_stiffness(&self, _between: &Vec3) -> Vec3 {
-        Vec3::from(self.stiffness)
+    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
+        Mat3::from_diagonal(&Vec3::from(self.stiffness))
+    }
+
+    fn settle(&self, mount: &mut Mount, force: Option<&Vec3>) -> Result<(), String> {
+        carry(mount, force);
+        Ok(())
+    }
+
+    fn check_ends(&self, between: &Vec3) -> Result<(), (String, String)> {
+        coincident(between, "bushing")
     }
 
     fn faults(&self, at: &KeyPath) -> Vec<Fault> {

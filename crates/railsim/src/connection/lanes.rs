@@ -89,7 +89,10 @@ impl BushingBlock {
     fn wrenches(&self, at: &Motions, out: &mut [Lane; 6]) {
         for l in 0..LANES {
             let of = |lanes: &[Lane; 3]| Vec3::new(lanes[0][l], lanes[1][l], lanes[2][l]);
-            let mount = Mount { p_A: of(&self.p_A), p_B: of(&self.p_B), preload: of(&self.preload) };
+            let mount = Mount {
+                preload: of(&self.preload),
+                ..Mount::new(of(&self.p_A), of(&self.p_B), Vec3::zeros())
+            };
             let wrench = translational(&of(&self.stiffness), &of(&self.damping), &at.lane(l), &mount);
             for i in 0..3 {
                 out[i][l] = wrench.f[i];
@@ -167,9 +170,8 @@ mod tests {
                 };
                 motions.push(Relative::between(&a, &b));
                 mounts.push(Mount {
-                    p_A: Vec3::new(0.5, f, 0.1),
-                    p_B: Vec3::new(-0.5, 0.2, f),
                     preload: Vec3::new(0.0, 10.0 * f, -5e4),
+                    ..Mount::new(Vec3::new(0.5, f, 0.1), Vec3::new(-0.5, 0.2, f), Vec3::zeros())
                 });
                 assert!(block.add(l, &bushing, &mounts[l]));
             }
@@ -177,13 +179,13 @@ mod tests {
             let mut sums = vec![Wrench::zero(); count];
             block.apply(&motions, &mut sums);
             for l in 0..count {
-                assert_eq!(sums[l], bushing.wrench(&motions[l], &mounts[l]), "lane {l}");
+                assert_eq!(sums[l], bushing.wrench(&motions[l], &mounts[l], &[]), "lane {l}");
             }
         }
         assert!(!BushingBlock::empty().add(
             0,
             &Bushing::examples()[1],
-            &Mount { p_A: Vec3::zeros(), p_B: Vec3::zeros(), preload: Vec3::zeros() }
+            &Mount::new(Vec3::zeros(), Vec3::zeros(), Vec3::zeros())
         ));
     }
 }

@@ -2,13 +2,15 @@
 //! rail profiles into a geometry table. After this nobody looks at the document.
 
 use crate::body::{RigidBody, Wheelset};
-use crate::connection::{Law, Mount};
+use crate::connection::{ForceLaw, Mount};
 use crate::contact::geometry_table::{GeometryTable, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::math::Vec3;
+use crate::math::{Vec3, rotation};
+use crate::schema::run::SimpleContact;
+use crate::schema::track::TrackSupport;
 use crate::schema::{Case, Connection, Track, Vehicle};
 use crate::track::DeviationField;
 use crate::track::Layout;
@@ -49,7 +51,7 @@ pub fn model(case: &Case) -> Result<Model> {
         &KeyPath::of("track.irregularity"),
     )?;
     let contact = contact(case)?;
-    Model::new(
+    let mut model = Model::new(
         bodies,
         wheelsets,
         links,
@@ -57,10 +59,17 @@ pub fn model(case: &Case) -> Result<Model> {
         speed_hold,
         layout,
         deviation,
-        Some(support(track)),
+        support(track),
         contact,
         case.run.gravity,
-    )
+    )?;
+    model.guided = guided(vehicle);
+    Ok(model)
+}
+
+/// Bodies that are led along the track, by index.
+fn guided(vehicle: &Vehicle) -> Vec<usize> {
+    vehicle.bodies.iter().enumerate().filter(|(_, b)| b.guided).map(|(i, _)| i).collect()
 }
 
 /// Geometry table of the case's wheel on its rail, without the rest of the model.
@@ -111,6 +120,9 @@ fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
 }
 
 fn contact(case: &Case) -> Result<Contact> {
+    if let Some(SimpleContact::Textbook(book)) = &case.run.contact {
+        return Ok(Contact::Textbook(*book));
+    }
     let settings = &case.vehicle.contact;
     let mass: f64 = case.vehicle.bodies.iter().map(|b| b.mass).sum::<f64>()
         + case.vehicle.wheelsets.iter().map(|w| w.mass).sum::<f64>();
@@ -124,15 +136,15 @@ fn contact(case: &Case) -> Result<Contact> {
     })
 }
 
-fn support(track: &Track) -> Support {
-    let s = &track.support;
+fn support(track: &Track) -> Option<Support> {
+    let TrackSupport::Lumped(s) = &track.support else { return None };
     let lever = s.half_base * s.half_base;
-    Support {
+    Some(Support {
         mass: s.mass,
         inertia: s.Ixx,
         stiffness: [s.ky, s.kz, s.kz * lever],
         damping: [s.cy, s.cz, s.cz * lever],
-    }
+    })
 }
 
 /// The equations of a wheelset hold for one that is round.
@@ -184,76 +196,65 @@ fn bodies(vehicle: &Vehicle) -> (Vec<RigidBody>, Vec<Wheelset>) {
 /// centres of mass and levers of that condition make the preloads; the levers of the case's own condition make the links.
 fn links(case: &Case) -> Result<Vec<Link>> {
     let mut design = mounts(&case.design)?;
-    let carries: Vec<bool> = case.design.connections.iter().map(|c| c.preload).collect();
+    let connections = &case.design.connections;
+    let carries: Vec<bool> = connections.iter().map(|c| c.preload).collect();
     let (bodies, wheelsets) = bodies(&case.design);
-    preload::solve(&bodies, &wheelsets, &mut design, &carries, case.run.gravity)?;
+    let key = |i: usize| connections[i].key.clone();
+    let fixed = guided(&case.design);
+    preload::solve(&bodies, &wheelsets, &mut design, &carries, &fixed, case.run.gravity, key)?;
     let mut links = mounts(&case.vehicle)?;
-    for (link, from) in links.iter_mut().zip(&design) {
+    for ((link, from), _) in links.iter_mut().zip(&design).zip(&carries).filter(|(_, c)| **c) {
         link.mount.preload = from.mount.preload;
+        link.mount.stretched = from.mount.stretched;
     }
     Ok(links)
 }
 
-/// Connections between indices, with levers from the centres of mass, not preloaded.
+/// Connections between indices, with levers from the centres of mass; what carries the vehicle is not preloaded yet.
 fn mounts(vehicle: &Vehicle) -> Result<Vec<Link>> {
-    vehicle
-        .connections
-        .iter()
-        .map(|connection| {
-            let at = connection.key.key("between");
-            let a = index(vehicle, &connection.between[0], &at.index(0))?;
-            let b = index(vehicle, &connection.between[1], &at.index(1))?;
-            check_ends(vehicle, connection, [a, b])?;
-            let mount = Mount {
-                p_A: Vec3::from(connection.points[0]) - position(vehicle, a),
-                p_B: Vec3::from(connection.points[1]) - position(vehicle, b),
-                preload: Vec3::zeros(),
-            };
-            Ok(Link { name: connection.name.clone(), a, b, mount, law: connection.law.clone() })
-        })
-        .collect()
+    vehicle.connections.iter().map(|connection| mount(vehicle, connection)).collect()
 }
 
-/// Least distance of the ends of an element that acts along its line, m.
-const SHORTEST_LINE: f64 = 1e-3;
+fn mount(vehicle: &Vehicle, connection: &Connection) -> Result<Link> {
+    let at = connection.key.key("between");
+    let a = index(vehicle, &connection.between[0], &at.index(0))?;
+    let b = index(vehicle, &connection.between[1], &at.index(1))?;
+    let axes = connection.axes.map(|[roll, pitch, yaw]| {
+        Box::new(rotation::rot_z(yaw) * rotation::rot_x(roll) * rotation::rot_y(pitch))
+    });
+    let own = |v: Vec3| axes.as_ref().map_or(v, |R| R.tr_mul(&v));
+    let [p, q] = connection.points.map(Vec3::from);
+    let mount = Mount::new(own(p - position(vehicle, a)), own(q - position(vehicle, b)), own(q - p));
+    check_ends(vehicle, connection, [a, b], &mount)?;
+    let law = connection.law.clone();
+    let memory = 0..law.memory();
+    let mut link = Link { name: connection.name.clone(), a, b, mount, law, axes, memory };
+    if !connection.preload {
+        let force = connection.force.map(Vec3::from);
+        link.law.settle(&mut link.mount, force.as_ref()).map_err(|found| {
+            let key = connection.key.key(if force.is_some() { "preload" } else { "kind" });
+            Error::input(Fault::new(key, found, "a preload that this kind carries, or none"))
+        })?;
+    }
+    Ok(link)
+}
+
 /// Farthest that a connection on a wheelset may be off the axle, m.
 const OFF_THE_AXLE: f64 = 1e-3;
 
 /// What a law asks of its two ends, and an axle box of what hangs on it.
-fn check_ends(vehicle: &Vehicle, connection: &Connection, ends: [usize; 2]) -> Result<()> {
-    let refuse = |key: &str, found: String, allowed: &str| {
+fn check_ends(vehicle: &Vehicle, connection: &Connection, ends: [usize; 2], mount: &Mount) -> Result<()> {
+    let refuse = |key: &str, found: String, allowed: String| {
         Err(Error::input(Fault::new(connection.key.key(key), found, allowed)))
     };
-    let apart = (Vec3::from(connection.points[0]) - Vec3::from(connection.points[1])).norm();
-    match &connection.law {
-        Law::Bushing(_) if apart > 0.0 => {
-            return refuse(
-                "positions",
-                format!("ends {apart:.3} m apart"),
-                "`position`: the ends of a bushing coincide in the design position",
-            );
-        }
-        Law::PointDamper(_) | Law::PointSpring(_) if apart < SHORTEST_LINE => {
-            return refuse(
-                "position",
-                format!("ends {apart:.4} m apart"),
-                "`positions`: two points at least 1 mm apart, between which the element acts",
-            );
-        }
-        Law::PointSpring(spring) if (spring.length - apart).abs() > 1e-6 => {
-            return refuse(
-                "length",
-                format!("{} m", spring.length),
-                "the distance of the two positions: a spring carries no hidden preload",
-            );
-        }
-        _ => {}
+    if let Err((found, allowed)) = connection.law.check_ends(&mount.between) {
+        return refuse(if mount.between.norm() > 0.0 { "positions" } else { "position" }, found, allowed);
     }
-    if connection.preload && !matches!(connection.law, Law::Bushing(_)) {
+    if connection.preload && connection.law.nominal_stiffness(&mount.between).amax() == 0.0 {
         return refuse(
             "carries_weight",
-            "true".into(),
-            "false: only a `bushing` carries the vehicle's weight",
+            format!("true, of a `{}` without stiffness", connection.law.kind()),
+            "false: this connection carries nothing at rest".into(),
         );
     }
     for (end, point) in ends.into_iter().zip(&connection.points) {
@@ -262,7 +263,7 @@ fn check_ends(vehicle: &Vehicle, connection: &Connection, ends: [usize; 2]) -> R
             return refuse(
                 "position",
                 format!("a point {:.3} m off the axle of a wheelset", lever.x.hypot(lever.z)),
-                "a point on the axle: axle boxes are no bodies, nothing would hold their pitch",
+                "a point on the axle: axle boxes are no bodies, nothing would hold their pitch".into(),
             );
         }
     }

@@ -1,7 +1,7 @@
 //! Energy of the whole vehicle, for audits: kinetic, weight, connections, contacts, track.
 
 use crate::body::rigid_body::kinetic_energy;
-use crate::connection::{ForceLaw, Relative};
+use crate::connection::Relative;
 use crate::dynamics::model::{Contact, Model};
 use crate::dynamics::rhs::VehicleSystem;
 use crate::dynamics::scratch::Wheel;
@@ -18,7 +18,7 @@ pub fn total(system: &VehicleSystem<'_>, t: f64, x: &[f64]) -> f64 {
     }
     for link in &model.links {
         let motion = Relative::between(&scratch.kinematics[link.a].pose, &scratch.kinematics[link.b].pose);
-        energy += link.law.energy(&motion, &link.mount);
+        energy += link.energy(&motion, x).0;
     }
     for contact in scratch.wheels.iter().flatten().flat_map(Wheel::contacts) {
         let delta = contact.placed.penetration;

@@ -2,6 +2,10 @@
 //!
 //! Unknowns are all coordinates of all bodies and track masses; a rolling wheelset's turned angle is replaced by its
 //! spin rate. Residuals are the accelerations of all speeds. Nothing is settled by time stepping.
+//!
+//! Where Newton's method fails (contacts that would part), the coordinates are relaxed instead: `dq/dtau` = accelerations, by
+//! implicit Euler steps in a pseudo-time whose step grows as the residual falls (pseudo-transient continuation; Kelley and
+//! Keyes, SIAM J. Numer. Anal. 35 (1998) 508). With an infinite step that is Newton's method again.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +18,13 @@ use crate::integrator::System;
 
 /// Largest acceleration left, m/s2 or rad/s2: a hundred times the rounding of the stiffest spring's force.
 const TOLERANCE: f64 = 1e-7;
-const MOST_ITERATIONS: usize = 60;
+/// Largest acceleration left where rounding of stiffer springs lets no step get below [`TOLERANCE`].
+const ROUNDING: f64 = 1e-5;
+const MOST_ITERATIONS: usize = 40;
+/// Implicit steps of a relaxation, at most.
+const MOST_RELAXATIONS: usize = 300;
+/// First step of a relaxation in pseudo-time, s2: a few times the inverse square of the fastest mode (some 2500 rad/s).
+const FIRST_RELAXATION: f64 = 1e-6;
 const INCREMENT: f64 = 1e-7;
 
 /// One unknown: an index into the state, or the spin rate of a wheelset.
@@ -24,17 +34,34 @@ enum Unknown {
     Spin(usize),
 }
 
-struct Problem<'s, 'm> {
+/// What a balance is sought under.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Conditions<'a> {
+    /// Speed along the track, m/s; 0 stands.
+    pub speed: f64,
+    /// Coordinates (indices into the state) that stay where they are; nobody asks for balance in their directions.
+    pub held: &'a [usize],
+    /// Accelerations (m/s2, rad/s2) that loads from outside add to speeds (indices into the state).
+    pub push: &'a [(usize, f64)],
+    /// The balance before this one, from which what connections remember is followed along the way here; without it they
+    /// remember what they did.
+    pub since: Option<&'a [f64]>,
+}
+
+/// Time that a way from one balance to the next takes, s: so slow that dampers carry nothing.
+const WAY: f64 = 1e3;
+
+struct Problem<'s, 'm, 'c> {
     system: &'s mut VehicleSystem<'m>,
     unknowns: Vec<Unknown>,
     equations: Vec<usize>,
     spin: Vec<f64>,
-    speed: f64,
+    conditions: Conditions<'c>,
     x: Vec<f64>,
     dx: Vec<f64>,
 }
 
-impl Problem<'_, '_> {
+impl Problem<'_, '_, '_> {
     /// Speeds that go with the coordinates: every body stays in its track frame, which moves on.
     fn set_speeds(&mut self) {
         let map = self.system.model.map();
@@ -43,7 +70,7 @@ impl Problem<'_, '_> {
             let frame = self.system.model.layout.frame(self.x[map.q(i).start]);
             let spins = i >= first;
             let spin = if spins { self.spin[i - first] } else { 0.0 };
-            let u = steady_speeds(&self.x[map.q(i)], &frame, self.speed, spin, spins);
+            let u = steady_speeds(&self.x[map.q(i)], &frame, self.conditions.speed, spin, spins);
             self.x[map.u(i)].copy_from_slice(&u);
         }
         for w in 0..self.system.model.wheelsets.len() {
@@ -51,9 +78,33 @@ impl Problem<'_, '_> {
         }
     }
 
+    /// Adds the slow speeds of the way from the balance before.
+    fn creep_from(&mut self, before: &[f64]) {
+        let map = self.system.model.map();
+        let spins = self.system.model.bodies.len();
+        for i in 0..self.system.model.count() {
+            let (q, u) = (map.q(i).start, map.u(i).start);
+            for d in (0..6).filter(|d| i < spins || *d != coordinate::THETA) {
+                self.x[u + d] += (self.x[q + d] - before[q + d]) / WAY;
+            }
+        }
+    }
+
     fn residual(&mut self, out: &mut DVector<f64>) {
         self.set_speeds();
+        if let Some(before) = self.conditions.since {
+            self.creep_from(before);
+        }
         self.system.rhs(0.0, &self.x, &mut self.dx);
+        for (speed, by) in self.conditions.push {
+            self.dx[*speed] += by;
+        }
+        if let Some(before) = self.conditions.since {
+            // One implicit Euler step: the equation of a memory stands at its own place, times the step.
+            for i in self.system.model.map().memory() {
+                self.dx[i] = WAY * self.dx[i] - (self.x[i] - before[i]);
+            }
+        }
         for (r, e) in out.iter_mut().zip(&self.equations) {
             *r = self.dx[*e];
         }
@@ -74,17 +125,72 @@ impl Problem<'_, '_> {
 /// [`Error::NotConverged`] naming the worst equation.
 pub fn solve(model: &Model, s: f64, speed: f64) -> Result<Vec<f64>> {
     let mut x = design_state(model, s);
-    let standing = SpeedProgram { s: reference_s(model, s), speed: 0.0, acceleration: 0.0 };
-    let mut system = VehicleSystem::new(model, standing);
-    system.irregular = false;
-    system.creeping = false;
-    newton(&mut system, &mut x, 0.0)?;
+    let mut system = standing(model, s);
+    let mut conditions = Conditions::default();
+    settle(&mut system, &mut x, conditions)?;
     if speed > 0.0 {
-        system.program.speed = speed;
-        system.creeping = true;
-        newton(&mut system, &mut x, speed)?;
+        roll(&mut system, speed);
+        conditions.speed = speed;
+        settle(&mut system, &mut x, conditions)?;
     }
     Ok(x)
+}
+
+/// A system that stands on the design track with its centre at `s`.
+#[must_use]
+pub fn standing(model: &Model, s: f64) -> VehicleSystem<'_> {
+    let program = SpeedProgram { s: reference_s(model, s), speed: 0.0, acceleration: 0.0 };
+    let mut system = VehicleSystem::new(model, program);
+    system.irregular = false;
+    system.creeping = false;
+    system
+}
+
+/// Lets a standing system roll.
+pub fn roll(system: &mut VehicleSystem<'_>, speed: f64) {
+    system.program.speed = speed;
+    system.creeping = speed > 0.0;
+}
+
+/// Takes `x` to balance under `conditions`: by Newton's method, else by relaxation. `x` is left as it was on failure.
+///
+/// # Errors
+/// [`Error::NotConverged`] naming the worst equation.
+pub fn settle(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, conditions: Conditions<'_>) -> Result<()> {
+    let held = with_free_place(system.model, conditions.held);
+    let conditions = Conditions { held: &held, ..conditions };
+    let mut problem = Problem::new(system, x, conditions);
+    let outcome = problem.newton().or_else(|first| {
+        problem.restart(x);
+        problem.relax().map_err(|_| first)
+    });
+    if outcome.is_ok() {
+        x.clone_from(&problem.x);
+    }
+    outcome
+}
+
+/// The same by Newton's method alone: quick to tell that a balance is too far away.
+///
+/// # Errors
+/// [`Error::NotConverged`].
+pub fn newton(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, conditions: Conditions<'_>) -> Result<()> {
+    let held = with_free_place(system.model, conditions.held);
+    let mut problem = Problem::new(system, x, Conditions { held: &held, ..conditions });
+    problem.newton()?;
+    x.clone_from(&problem.x);
+    Ok(())
+}
+
+/// The held coordinates with, where no speed hold fixes the vehicle's place, that of its reference body: it stands where it
+/// was put, and what would move it along the track is not asked for.
+fn with_free_place(model: &Model, held: &[usize]) -> Vec<usize> {
+    let mut held = held.to_vec();
+    let place = model.map().q(model.reference()).start;
+    if model.place_is_free() && !held.contains(&place) {
+        held.push(place);
+    }
+    held
 }
 
 /// Arc length of the reference body when the vehicle's centre is at `s`.
@@ -94,7 +200,8 @@ pub fn reference_s(model: &Model, s: f64) -> f64 {
 }
 
 /// All bodies where the drawing has them, lowered until the wheels touch and the track carries them.
-fn design_state(model: &Model, s: f64) -> Vec<f64> {
+#[must_use]
+pub fn design_state(model: &Model, s: f64) -> Vec<f64> {
     let map = model.map();
     let mut x = vec![0.0; map.size()];
     let load = model.mass() * model.gravity / model.wheelsets.len().max(1) as f64;
@@ -131,89 +238,148 @@ fn touching_depth(table: &crate::contact::geometry_table::GeometryTable, load: f
     high
 }
 
-fn newton(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, speed: f64) -> Result<()> {
-    let model = system.model;
-    let map = model.map();
-    let rolling = speed > 0.0;
-    let mut unknowns = Vec::new();
-    let mut equations = Vec::new();
-    for i in 0..model.count() {
-        let wheelset = i.checked_sub(model.bodies.len());
-        for d in 0..6 {
-            match wheelset {
-                Some(_) if d == coordinate::THETA && !rolling => {}
-                Some(w) if d == coordinate::THETA => {
-                    unknowns.push(Unknown::Spin(w));
-                    equations.push(map.u(i).start + d);
-                }
-                _ => {
-                    unknowns.push(Unknown::State(map.q(i).start + d));
-                    equations.push(map.u(i).start + d);
+impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
+    fn new(system: &'s mut VehicleSystem<'m>, x: &[f64], conditions: Conditions<'c>) -> Self {
+        let model = system.model;
+        let map = model.map();
+        let rolling = conditions.speed > 0.0;
+        let mut pairs = Vec::new();
+        for i in (0..model.count()).filter(|i| !model.guided.contains(i)) {
+            for d in 0..6 {
+                let (q, u) = (map.q(i).start + d, map.u(i).start + d);
+                match i.checked_sub(model.bodies.len()) {
+                    Some(w) if d == coordinate::THETA => {
+                        if rolling {
+                            pairs.push((q, Unknown::Spin(w), u));
+                        }
+                    }
+                    _ => pairs.push((q, Unknown::State(q), u)),
                 }
             }
         }
-    }
-    if model.support.is_some() {
-        for w in 0..model.wheelsets.len() {
-            unknowns.extend(map.track_q(w).map(Unknown::State));
-            equations.extend(map.track_u(w));
+        if model.support.is_some() {
+            for w in 0..model.wheelsets.len() {
+                pairs.extend(map.track_q(w).zip(map.track_u(w)).map(|(q, u)| (q, Unknown::State(q), u)));
+            }
         }
-    }
-    let n = unknowns.len();
-    let spin = model.wheelsets.iter().map(|w| -speed / w.radius).collect();
-    let dx = vec![0.0; map.size()];
-    let mut p = Problem { system, unknowns, equations, spin, speed, x: std::mem::take(x), dx };
-    let mut r = DVector::zeros(n);
-    let mut trial = DVector::zeros(n);
-    p.residual(&mut r);
-    let mut iterations = 0;
-    while size(&r) > TOLERANCE {
-        if iterations == MOST_ITERATIONS || !size(&r).is_finite() {
-            let (worst, _) = r.argmax_abs();
-            return Err(Error::NotConverged {
-                what: if rolling { "rolling equilibrium".into() } else { "static equilibrium".into() },
-                iterations,
-                residual: size(&r),
-                unit: "m/s2 or rad/s2",
-                worst: describe(model, p.equations[worst]),
-            });
+        if conditions.since.is_some() {
+            pairs.extend(map.memory().map(|i| (i, Unknown::State(i), i)));
         }
+        pairs.retain(|(q, ..)| !conditions.held.contains(q));
+        let (unknowns, equations) = pairs.into_iter().map(|(_, unknown, u)| (unknown, u)).unzip();
+        let dx = vec![0.0; map.size()];
+        let mut problem =
+            Self { system, unknowns, equations, spin: Vec::new(), conditions, x: Vec::new(), dx };
+        problem.restart(x);
+        problem
+    }
+
+    fn restart(&mut self, x: &[f64]) {
+        let model = self.system.model;
+        self.spin = model.wheelsets.iter().map(|w| -self.conditions.speed / w.radius).collect();
+        self.x = x.to_vec();
+    }
+
+    fn jacobian(&mut self) -> DMatrix<f64> {
+        let n = self.unknowns.len();
         let mut jacobian = DMatrix::zeros(n, n);
+        let (mut up, mut down) = (DVector::zeros(n), DVector::zeros(n));
         for j in 0..n {
-            let u = p.unknowns[j];
-            p.shift(u, INCREMENT);
-            p.residual(&mut trial);
-            p.shift(u, -2.0 * INCREMENT);
-            let mut back = DVector::zeros(n);
-            p.residual(&mut back);
-            p.shift(u, INCREMENT);
-            jacobian.set_column(j, &((&trial - back) / (2.0 * INCREMENT)));
+            let u = self.unknowns[j];
+            self.shift(u, INCREMENT);
+            self.residual(&mut up);
+            self.shift(u, -2.0 * INCREMENT);
+            self.residual(&mut down);
+            self.shift(u, INCREMENT);
+            jacobian.set_column(j, &((&up - &down) / (2.0 * INCREMENT)));
         }
-        let step = descend(jacobian, &r);
-        // Halve the step until the residual falls; contacts that would part make full steps overshoot.
-        let mut factor = 1.0;
-        let old = r.norm();
-        loop {
-            for j in 0..n {
-                let u = p.unknowns[j];
-                p.shift(u, -factor * step[j]);
-            }
-            p.residual(&mut trial);
-            if trial.norm() < old || factor < 1e-3 {
-                break;
-            }
-            for j in 0..n {
-                let u = p.unknowns[j];
-                p.shift(u, factor * step[j]);
-            }
-            factor *= 0.5;
-        }
-        r.copy_from(&trial);
-        iterations += 1;
+        jacobian
     }
-    p.set_speeds();
-    *x = p.x;
-    Ok(())
+
+    fn shift_all(&mut self, step: &DVector<f64>, factor: f64) {
+        for j in 0..self.unknowns.len() {
+            let u = self.unknowns[j];
+            self.shift(u, factor * step[j]);
+        }
+    }
+
+    fn newton(&mut self) -> Result<()> {
+        let n = self.unknowns.len();
+        let (mut r, mut trial) = (DVector::zeros(n), DVector::zeros(n));
+        self.residual(&mut r);
+        let mut iterations = 0;
+        while size(&r) > TOLERANCE {
+            if iterations == MOST_ITERATIONS || !size(&r).is_finite() {
+                return Err(self.not_converged(iterations, &r));
+            }
+            let step = descend(self.jacobian(), &r);
+            // Halve the step until the residual falls; contacts that would part make full steps overshoot.
+            let mut factor = 1.0;
+            let old = r.norm();
+            loop {
+                self.shift_all(&step, -factor);
+                self.residual(&mut trial);
+                if trial.norm() < old {
+                    break;
+                }
+                if factor < 1e-3 {
+                    if size(&r) < ROUNDING {
+                        self.shift_all(&step, factor);
+                        self.set_speeds();
+                        return Ok(());
+                    }
+                    break;
+                }
+                self.shift_all(&step, factor);
+                factor *= 0.5;
+            }
+            r.copy_from(&trial);
+            iterations += 1;
+        }
+        self.set_speeds();
+        Ok(())
+    }
+
+    /// Implicit Euler steps in pseudo-time.
+    fn relax(&mut self) -> Result<()> {
+        let n = self.unknowns.len();
+        let (mut r, mut trial) = (DVector::zeros(n), DVector::zeros(n));
+        self.residual(&mut r);
+        let mut tau = FIRST_RELAXATION;
+        for _ in 0..MOST_RELAXATIONS {
+            if size(&r) <= TOLERANCE {
+                self.set_speeds();
+                return Ok(());
+            }
+            let mut jacobian = self.jacobian();
+            for j in 0..n {
+                jacobian[(j, j)] -= 1.0 / tau;
+            }
+            let step = descend(jacobian, &r);
+            self.shift_all(&step, -1.0);
+            self.residual(&mut trial);
+            if size(&trial).is_finite() && trial.norm() < 2.0 * r.norm() {
+                tau *= (r.norm() / trial.norm()).clamp(0.5, 10.0) * 1.3;
+                r.copy_from(&trial);
+            } else {
+                self.shift_all(&step, 1.0);
+                tau *= 0.2;
+            }
+        }
+        Err(self.not_converged(MOST_RELAXATIONS, &r))
+    }
+
+    fn not_converged(&self, iterations: usize, r: &DVector<f64>) -> Error {
+        let (worst, _) = r.argmax_abs();
+        let what = if self.conditions.speed > 0.0 { "rolling equilibrium" } else { "static equilibrium" };
+        Error::NotConverged {
+            what: what.into(),
+            iterations,
+            residual: size(r),
+            unit: "m/s2 or rad/s2",
+            worst: self.equations.get(worst).map_or_else(String::new, |e| describe(self.system.model, *e)),
+        }
+    }
 }
 
 /// Newton step; where the Jacobian is singular (a coordinate nothing holds) the smallest step that does it.

@@ -1,14 +1,16 @@
 //! The compiled model: immutable, shared between threads.
 
+use std::ops::Range;
+
 use crate::body::{RigidBody, Wheelset};
-use crate::connection::{Law, Mount};
+use crate::connection::{ForceLaw, Law, Mount, Relative, Wrench};
 use crate::contact::creep::CreepLaw;
 use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
 use crate::error::Result;
 use crate::integrator::StiffBlock;
-use crate::math::Vec3;
+use crate::math::{Mat3, Vec3};
 use crate::track::DeviationField;
 use crate::track::Layout;
 
@@ -21,10 +23,81 @@ pub struct Link {
     pub a: usize,
     /// Body B.
     pub b: usize,
-    /// Points and preload.
+    /// Points and preload, in the connection's own axes.
     pub mount: Mount,
     /// Force law.
     pub law: Law,
+    /// The connection's own axes to the bodies' in the design position, where they differ.
+    pub axes: Option<Box<Mat3>>,
+    /// Where in the state stands what the law remembers; set by [`Model::new`].
+    pub memory: Range<usize>,
+}
+
+impl Link {
+    /// The motion as the connection's own axes see it.
+    #[inline]
+    fn seen(motion: &Relative, R: &Mat3) -> Relative {
+        Relative {
+            r_AB: R.tr_mul(&motion.r_AB),
+            R_AB: R.tr_mul(&(motion.R_AB * R)),
+            v_AB: R.tr_mul(&motion.v_AB),
+            w_AB: R.tr_mul(&motion.w_AB),
+        }
+    }
+
+    /// Wrench on B about A's centre of mass in A's axes, at the state `x`.
+    #[inline]
+    #[must_use]
+    pub fn wrench(&self, motion: &Relative, x: &[f64]) -> Wrench {
+        let memory = &x[self.memory.clone()];
+        match &self.axes {
+            None => self.law.wrench(motion, &self.mount, memory),
+            Some(R) => {
+                let own = self.law.wrench(&Self::seen(motion, R), &self.mount, memory);
+                Wrench { f: **R * own.f, m: **R * own.m }
+            }
+        }
+    }
+
+    /// Rates of what the law remembers, written into `dx`.
+    #[inline]
+    pub fn memory_rates(&self, motion: &Relative, x: &[f64], dx: &mut [f64]) {
+        let (memory, rates) = (&x[self.memory.clone()], &mut dx[self.memory.clone()]);
+        match &self.axes {
+            None => self.law.memory_rates(motion, &self.mount, memory, rates),
+            Some(R) => self.law.memory_rates(&Self::seen(motion, R), &self.mount, memory, rates),
+        }
+    }
+
+    /// Stored energy, J, and dissipated power, W, at the state `x`.
+    #[must_use]
+    pub fn energy(&self, motion: &Relative, x: &[f64]) -> (f64, f64) {
+        let memory = &x[self.memory.clone()];
+        let own = self.axes.as_ref().map_or(*motion, |R| Self::seen(motion, R));
+        (self.law.energy(&own, &self.mount, memory), self.law.dissipation(&own, &self.mount, memory))
+    }
+
+    /// Translational stiffness in the design position, bodies' axes, N/m.
+    #[must_use]
+    pub fn nominal_stiffness(&self) -> Mat3 {
+        let k = self.law.nominal_stiffness(&self.mount.between);
+        self.axes.as_ref().map_or(k, |R| **R * k * R.transpose())
+    }
+
+    /// Sets what the connection carries in the design position; `force` on B in the bodies' axes.
+    ///
+    /// # Errors
+    /// What the law cannot carry, in words.
+    pub fn settle(&mut self, force: Option<&Vec3>) -> std::result::Result<(), String> {
+        let own = force.map(|f| self.axes.as_ref().map_or(*f, |R| R.tr_mul(f)));
+        self.law.settle(&mut self.mount, own.as_ref())
+    }
+
+    /// Levers of the two ends, bodies' axes, m.
+    #[must_use]
+    pub fn levers(&self) -> [Vec3; 2] {
+        [self.mount.p_A, self.mount.p_B].map(|p| self.axes.as_ref().map_or(p, |R| **R * p))
+    }
 }
 
 /// A named point on a body.
@@ -105,7 +178,10 @@ pub struct Model {
     pub contact: Contact,
     /// m/s2.
     pub gravity: f64,
+    /// Bodies that move along the design track at the speed asked for, whatever acts on them.
+    pub guided: Vec<usize>,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
+    memory: usize,
 }
 
 impl Model {
@@ -127,7 +203,13 @@ impl Model {
         gravity: f64,
     ) -> Result<Self> {
         links.sort_by_key(|l| (l.a, l.b));
-        let map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len() };
+        let mut map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len(), memory: 0 };
+        let first = map.size();
+        for link in &mut links {
+            let start = first + map.memory;
+            map.memory += link.law.memory();
+            link.memory = start..first + map.memory;
+        }
         let stiff_blocks = (0..wheelsets.len())
             .map(|w| {
                 let start = map.start(map.bodies + w);
@@ -145,14 +227,16 @@ impl Model {
             support,
             contact,
             gravity,
+            guided: Vec::new(),
             stiff_blocks,
+            memory: map.memory,
         })
     }
 
     /// Layout of the state.
     #[must_use]
     pub fn map(&self) -> StateMap {
-        StateMap { bodies: self.bodies.len(), wheelsets: self.wheelsets.len() }
+        StateMap { bodies: self.bodies.len(), wheelsets: self.wheelsets.len(), memory: self.memory }
     }
 
     /// Body or wheelset `i` as a rigid body.
@@ -171,6 +255,12 @@ impl Model {
     #[must_use]
     pub fn mass(&self) -> f64 {
         (0..self.count()).map(|i| self.rigid(i).mass).sum()
+    }
+
+    /// Whether nothing fixes the vehicle's place along the track: neither a speed hold nor a guided body.
+    #[must_use]
+    pub fn place_is_free(&self) -> bool {
+        self.speed_hold.is_none() && self.guided.is_empty() && self.count() > 0
     }
 
     /// The body whose place is called the vehicle's: the one that the speed is held on, else the first.

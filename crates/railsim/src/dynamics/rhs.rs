@@ -1,8 +1,8 @@
 //! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
 
-use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, wheelset};
+use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, steady_speeds, wheelset};
 use crate::connection::lanes::BushingBlock;
-use crate::connection::{ForceLaw, Law, Pair, Pose, Relative};
+use crate::connection::{Law, Pair, Pose, Relative};
 use crate::contact::creep::{CreepCase, Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
 use crate::contact::geometry_table::ContactPoint;
@@ -81,7 +81,7 @@ impl Joints {
                 pairs.len() - 1
             });
             let beside = match &link.law {
-                Law::Bushing(bushing) => {
+                Law::Bushing(bushing) if link.axes.is_none() => {
                     if blocks.last().is_none_or(BushingBlock::is_full) {
                         blocks.push(BushingBlock::empty());
                     }
@@ -127,6 +127,18 @@ impl<'m> VehicleSystem<'m> {
                 f: Vec3::new(0.0, 0.0, self.model.rigid(i).mass * self.model.gravity),
                 m: Vec3::zeros(),
             };
+        }
+    }
+
+    /// Guided bodies keep their place in the track frame, which moves at the speed asked for.
+    #[inline(always)]
+    fn guide_stage(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        for &i in &self.model.guided {
+            let q = &x[self.map.q(i)];
+            let frame = self.model.layout.frame(q[0]);
+            let u = steady_speeds(q, &frame, self.program.at(t).1, 0.0, false);
+            let k = &mut self.scratch.kinematics[i];
+            kinematics(q, &u, frame, false, self.level, &mut dx[self.map.q(i)], k);
         }
     }
 
@@ -217,7 +229,7 @@ impl<'m> VehicleSystem<'m> {
     }
 
     #[inline(always)]
-    fn connection_stage(&mut self) {
+    fn connection_stage(&mut self, x: &[f64], dx: &mut [f64]) {
         let Joints { pairs, motions, sums, blocks, single } = &mut self.joints;
         let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
         for ((motion, sum), (a, b)) in motions.iter_mut().zip(sums.iter_mut()).zip(&*pairs) {
@@ -229,9 +241,12 @@ impl<'m> VehicleSystem<'m> {
         }
         for (joint, link) in &*single {
             let link = &self.model.links[*link];
-            let one = link.law.wrench(&motions[*joint], &link.mount);
+            let one = link.wrench(&motions[*joint], x);
             sums[*joint].f += one.f;
             sums[*joint].m += one.m;
+            if !link.memory.is_empty() {
+                link.memory_rates(&motions[*joint], x, dx);
+            }
         }
         for ((motion, sum), (a, b)) in motions.iter().zip(&*sums).zip(&*pairs) {
             let pair = Pair::new(sum, motion, &kinematics[*a].pose.R);
@@ -265,6 +280,11 @@ impl<'m> VehicleSystem<'m> {
             } else {
                 wheelset::rotate(k, &body.inertia, wrench, &self.scratch.wheel_moment[i - first], du);
             }
+        }
+        for &i in &self.model.guided {
+            let du = &mut dx[self.map.u(i)];
+            du.fill(0.0);
+            du[0] = self.program.acceleration;
         }
         for w in 0..self.model.wheelsets.len() {
             let (tq, tu) = (self.map.track_q(w), self.map.track_u(w));
@@ -454,8 +474,9 @@ impl VehicleSystem<'_> {
     #[inline(always)]
     pub fn stages(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.kinematics_stage(x, dx);
+        self.guide_stage(t, x, dx);
         self.contact_stage(x);
-        self.connection_stage();
+        self.connection_stage(x, dx);
         self.speed_hold_stage(t, x);
         self.acceleration_stage(x, dx);
     }

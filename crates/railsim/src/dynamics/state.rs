@@ -2,7 +2,8 @@
 //!
 //! Bodies first, 12 numbers each: `s y z phi theta psi | vx vy vz wx wy wz`. Then wheelsets with the track mass under
 //! them, 18 each: `s y z phi theta psi  y_t z_t phi_t | vx vy vz wx wy wz  vy_t vz_t vphi_t`, so that a wheelset and its
-//! track are one contiguous block of positions and one of speeds: the block that an implicit scheme treats.
+//! track are one contiguous block of positions and one of speeds: the block that an implicit scheme treats. Last what
+//! connections remember, in the order of the links.
 
 use std::ops::Range;
 
@@ -20,13 +21,21 @@ pub struct StateMap {
     pub bodies: usize,
     /// Number of wheelsets.
     pub wheelsets: usize,
+    /// Numbers that connections remember.
+    pub memory: usize,
 }
 
 impl StateMap {
     /// Length of the state vector.
     #[must_use]
     pub fn size(&self) -> usize {
-        self.bodies * BODY + self.wheelsets * WHEELSET
+        self.bodies * BODY + self.wheelsets * WHEELSET + self.memory
+    }
+
+    /// What all connections remember.
+    #[must_use]
+    pub fn memory(&self) -> Range<usize> {
+        self.size() - self.memory..self.size()
     }
 
     /// First number of body `i` (bodies, then wheelsets).
@@ -70,7 +79,7 @@ mod tests {
 
     #[test]
     fn every_number_of_the_state_has_exactly_one_owner() {
-        let map = StateMap { bodies: 3, wheelsets: 6 };
+        let map = StateMap { bodies: 3, wheelsets: 6, memory: 4 };
         let mut owners = vec![0; map.size()];
         let mut own = |r: Range<usize>| r.for_each(|i| owners[i] += 1);
         for i in 0..9 {
@@ -81,6 +90,7 @@ mod tests {
             own(map.track_q(w));
             own(map.track_u(w));
         }
+        own(map.memory());
         assert!(owners.iter().all(|n| *n == 1));
     }
 }

@@ -10,20 +10,32 @@ use crate::dynamics::state::PAIR;
 use crate::math::Vec3;
 
 /// Relative speed along `e` of wheel against rail per unit of each of the pair's nine speeds.
-fn direction(placed: &PlacedContact, e: &Vec3) -> [f64; PAIR] {
+pub(crate) fn direction(placed: &PlacedContact, e: &Vec3) -> [f64; PAIR] {
     let turn = placed.lever.cross(e);
     let [y, z] = placed.point;
     [e.x, e.y, e.z, turn.x, turn.y, turn.z, -e.y, -e.z, -(y * e.z - z * e.y)]
 }
 
 /// Adds `factor * left * right'`.
-fn add_outer(m: &mut [f64], factor: f64, left: &[f64; PAIR], right: &[f64; PAIR]) {
+pub(crate) fn add_outer(m: &mut [f64], factor: f64, left: &[f64; PAIR], right: &[f64; PAIR]) {
     for (row, l) in m.chunks_exact_mut(PAIR).zip(left) {
         let scaled = factor * l;
         for (value, r) in row.iter_mut().zip(right) {
             *value += scaled * r;
         }
     }
+}
+
+/// What the pair's nine speeds move: kg, kg m2; infinite for a rigid track.
+pub(crate) fn inertias(model: &Model, w: usize) -> [f64; PAIR] {
+    let body = &model.wheelsets[w].body;
+    let mut mass = [f64::INFINITY; PAIR];
+    mass[..3].fill(body.mass);
+    mass[3..6].copy_from_slice(body.inertia.as_slice());
+    if let Some(support) = &model.support {
+        mass[6..].copy_from_slice(&[support.mass, support.mass, support.inertia]);
+    }
+    mass
 }
 
 /// Creep damping forward and lateral, N s/m: Kalker's slopes, reduced by what saturation leaves of the linear force.

@@ -1,12 +1,14 @@
 //! Mathematics without a rail word in it.
 
 pub mod angle;
+pub mod eigen;
 pub mod elliptic;
 pub mod fft;
 pub mod hermite;
 pub mod quadrature;
 pub mod rotation;
 pub mod small_lu;
+pub mod table;
 
 /// Column of three.
 pub type Vec3 = nalgebra::Vector3<f64>;

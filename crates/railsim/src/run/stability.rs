@@ -9,9 +9,10 @@
 
 use nalgebra::DMatrix;
 
-use crate::dynamics::VehicleSystem;
+use crate::connection::ForceLaw;
 use crate::dynamics::linearise::jacobian;
 use crate::dynamics::state::PAIR;
+use crate::dynamics::{Link, Model, VehicleSystem};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::{Integrator, ROS2_GAMMA, System};
 
@@ -41,6 +42,7 @@ pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator)
     let a = stiff_part(system);
     system.irregular = irregular;
     let h = integrator.step();
+    follow_memory(system.model, integrator)?;
     // What the vehicle itself does in one step is exp(h J): its spectral radius is exp(h times the largest real part).
     let (Some(largest_eigenvalue), Some(own)) = (spectral_radius(j.clone()), spectral_radius((&j * h).exp()))
     else {
@@ -83,6 +85,32 @@ pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator)
             ))
         }
     }
+}
+
+/// What connections remember may settle faster in use (friction that slides, a damper that blows off) than about the
+/// state at the start.
+fn follow_memory(model: &Model, integrator: &Integrator) -> Result<()> {
+    // Where the scheme's stability function leaves the unit circle on the negative real axis.
+    let reach = match integrator {
+        Integrator::Heun { .. } | Integrator::Ros2 { .. } => 2.0,
+        Integrator::Rk4 { .. } => 2.785,
+    };
+    let speed = |link: &Link| link.law.memory_speed();
+    let Some(link) = model.links.iter().max_by(|a, b| speed(a).total_cmp(&speed(b))) else { return Ok(()) };
+    if integrator.step() * speed(link) <= reach {
+        return Ok(());
+    }
+    Err(Error::input(Fault::new(
+        KeyPath::of("run.integrator.step"),
+        format!(
+            "{} s, with `{}` (a `{}`) that settles at {:.0} 1/s",
+            integrator.step(),
+            link.name,
+            link.law.kind(),
+            speed(link)
+        ),
+        format!("at most {:.2e} s with this scheme", reach / speed(link)),
+    )))
 }
 
 /// The part of the system's matrix that the stiff blocks know.

@@ -36,6 +36,8 @@ impl Control for Free {
 pub enum Ended {
     /// The leading wheelset reached the end of the track.
     EndOfTrack,
+    /// An analysis gave all its rows.
+    Complete,
     /// The run left what the model describes; the columns go up to there.
     Diverged(Error),
 }
@@ -45,6 +47,8 @@ pub enum Ended {
 pub struct Outcome {
     /// Names and samples, all of one length.
     pub columns: Vec<(String, Vec<f64>)>,
+    /// Names and texts of the same length, beside the columns: what modes are called.
+    pub labels: Vec<(String, Vec<String>)>,
     /// How it ended.
     pub ended: Ended,
     /// Counts: steps, right-hand sides, factorisations; the step's stability margin.
@@ -148,7 +152,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
         "simulated_s": step as f64 * h,
         "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,
     });
-    Ok(Outcome { columns: recorder.into_columns(), ended, statistics })
+    Ok(Outcome { columns: recorder.into_columns(), labels: Vec::new(), ended, statistics })
 }
 
 /// Most irregularity (m) under a wheel at the start: a tenth of what the contact is pressed in by the wheel's load.

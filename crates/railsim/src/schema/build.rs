@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::check::unknown;
 use super::node::{Node, quoted};
-use super::vehicle::{Body, Connection, Sensor, Vehicle, Wheelset};
+use super::vehicle::{Body, Connection, Sensor, Shape, Vehicle, Wheelset};
 use super::written::{WrittenConnection, WrittenVehicle};
 use crate::connection::ForceLaw;
 use crate::error::{Fault, KeyPath};
@@ -33,6 +33,7 @@ impl<'a> Builder<'a> {
                 mass: b.mass,
                 inertia: b.inertia,
                 position: b.position,
+                guided: b.guided,
                 key: node.at.clone(),
             })
             .collect();
@@ -97,6 +98,26 @@ impl<'a> Builder<'a> {
         for s in &sensors {
             self.body(&s.body, s.key.key("body"), &names);
         }
+        for (kind, placed) in [
+            ("equipment", written.equipment.iter().map(|e| e.body.as_str()).collect::<Vec<_>>()),
+            ("shape", written.shape.iter().map(Shape::body).collect()),
+        ] {
+            for (body, node) in placed.into_iter().zip(self.nodes(kind)) {
+                self.body(body, node.at.key("body"), &names);
+            }
+        }
+        for (i, piece) in written.equipment.iter().enumerate() {
+            self.name(&piece.name, &self.root.at.key("equipment").index(i));
+        }
+        for (case, loads) in &written.load_case {
+            for (i, load) in loads.iter().enumerate() {
+                self.body(&load.body, self.root.at.key("load_case").key(case).index(i).key("body"), &names);
+            }
+        }
+        if !written._include.is_empty() {
+            let allowed = "a document with its included files already in it, as `lmap` makes it";
+            self.fault(Fault::new(self.root.at.key("include"), "files to include", allowed));
+        }
         if let Some(hold) = &written.speed_hold {
             self.body(&hold.body, self.root.at.key("speed_hold").key("body"), &names);
         }
@@ -117,6 +138,9 @@ impl<'a> Builder<'a> {
             outline: written.outline,
             traction: written.traction,
             dynamic_brake: written.dynamic_brake,
+            equipment: written.equipment,
+            shapes: written.shape,
+            load_cases: written.load_case,
         })
     }
 
@@ -147,12 +171,18 @@ impl<'a> Builder<'a> {
                 return Vec::new();
             }
         };
+        if c.preload.is_some() && c.carries_weight {
+            let allowed = "a given preload, or carries_weight = true, for which it is solved";
+            self.fault(Fault::new(node.at.key("preload"), "preload and carries_weight", allowed));
+        }
         let one = |name: String, points| Connection {
             name,
             between: c.between.clone(),
             points,
             law: c.law.clone(),
             preload: c.carries_weight,
+            force: c.preload,
+            axes: c.axes,
             key: node.at.clone(),
         };
         if !c.mirror {
@@ -164,8 +194,16 @@ impl<'a> Builder<'a> {
             self.fault(Fault::new(key.clone(), format!("mirror = true with y = {}", points[0][1]), allowed));
             return Vec::new();
         }
-        let left = points.map(|[x, y, z]| [x, -y, z]);
-        vec![one(format!("{}_right", c.name), points), one(format!("{}_left", c.name), left)]
+        let right = one(format!("{}_right", c.name), points);
+        let left = Connection {
+            name: format!("{}_left", c.name),
+            points: points.map(|[x, y, z]| [x, -y, z]),
+            law: c.law.mirrored(),
+            force: c.preload.map(|[x, y, z]| [x, -y, z]),
+            axes: c.axes.map(|[roll, pitch, yaw]| [-roll, pitch, -yaw]),
+            ..right.clone()
+        };
+        vec![right, left]
     }
 
     /// Names become parts of channel names, so they are words without dots.

@@ -10,7 +10,8 @@ use serde_json::Value as Json;
 use super::check::{self, unknown};
 use super::document::{Document, finish};
 use super::node::{Node, Value, quoted};
-use super::run::Run;
+use super::run::{Run, RunKind};
+use super::run_check;
 use super::track::Track;
 use super::vehicle::Vehicle;
 use crate::contact::creep::CreepLaw;
@@ -183,6 +184,17 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
         && let Some(step) = at("run", "integrator").and_then(|i| i.get("step"))
     {
         steps(step, output, faults);
+    }
+    if let Some(run) = root.get("run") {
+        run_check::relations(run, faults);
+    }
+    if let Some(node) = at("track", "irregularity")
+        && let Some(kind) = at("run", "kind").and_then(Node::text)
+        && kind != RunKind::Time.name()
+        && !node.items().is_empty()
+    {
+        let found = format!("an irregularity with run.kind = {}", quoted(kind));
+        faults.push(Fault::new(node.at.clone(), found, "none: this is done on the design track"));
     }
     leaf(at("run", "integrator"), Integrator::faults, faults);
     leaf(at("run", "creep"), CreepLaw::faults, faults);

@@ -10,10 +10,11 @@ mod check;
 mod document;
 mod node;
 mod parameter;
-mod run;
+pub mod run;
+mod run_check;
 mod template;
 mod toml_source;
-mod track;
+pub mod track;
 mod vehicle;
 mod written;
 
@@ -23,5 +24,6 @@ pub use run::{Run, RunKind};
 pub use toml_source::{SyntaxError, line_of, syntax_error, toml_to_json};
 pub use track::{Support, Track};
 pub use vehicle::{
-    Body, Connection, ContactSettings, DynamicBrake, Outline, Sensor, SpeedHold, Traction, Vehicle, Wheelset,
+    Axis, Body, Connection, ContactSettings, DynamicBrake, Equipment, Load, Outline, Sensor, Shape,
+    SpeedHold, Traction, Vehicle, Wheelset,
 };

@@ -27,8 +27,8 @@ pub struct Track {
     pub rail_inclination: f64,
     /// Name of the rail profile in `profiles`.
     pub rail_profile: String,
-    /// What carries the rails under each wheelset.
-    pub support: Support,
+    /// What carries the rails under each wheelset; `"rigid"`: they do not move.
+    pub support: TrackSupport,
     /// Segments from the start; tangent track where none is given.
     #[serde(default)]
     pub layout: Vec<Segment>,
@@ -43,6 +43,24 @@ pub struct Track {
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "unit" = "m"))]
     pub fade_start: f64,
+}
+
+/// What carries the rails.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum TrackSupport {
+    /// A mass on springs and dampers.
+    Lumped(Support),
+    /// Nothing gives way.
+    Rigid(RigidTrack),
+}
+
+/// The word for a track that does not move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RigidTrack {
+    /// `"rigid"`
+    Rigid,
 }
 
 /// One lumped track mass under each wheelset, moving laterally, vertically and in roll on springs and dampers.

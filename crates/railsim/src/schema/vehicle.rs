@@ -1,5 +1,7 @@
 //! The vehicle: bodies, wheelsets, connections and sensors in vehicle axes, every number resolved.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
@@ -44,6 +46,12 @@ pub struct Vehicle {
     pub traction: Option<Traction>,
     /// Dynamic brake.
     pub dynamic_brake: Option<DynamicBrake>,
+    /// What stands on or hangs under the bodies, for drawings.
+    pub equipment: Vec<Equipment>,
+    /// Shapes of the bodies, for drawings and outlines.
+    pub shapes: Vec<Shape>,
+    /// Extra masses of named load cases.
+    pub load_cases: BTreeMap<String, Vec<Load>>,
 }
 
 /// A body other than a wheelset.
@@ -57,6 +65,8 @@ pub struct Body {
     pub inertia: [f64; 3],
     /// Centre of mass, m.
     pub position: [f64; 3],
+    /// Moves along the design track at the speed asked for, whatever acts on it.
+    pub guided: bool,
     /// Where it was written.
     pub key: KeyPath,
 }
@@ -93,6 +103,10 @@ pub struct Connection {
     pub law: Law,
     /// Takes part in carrying the vehicle (`carries_weight` in the file).
     pub preload: bool,
+    /// Force on B in the design position, in the connection's own axes, N (`preload` in the file).
+    pub force: Option<[f64; 3]>,
+    /// Roll, pitch and yaw of the connection's own axes, rad.
+    pub axes: Option<[f64; 3]>,
     /// Where it was written.
     pub key: KeyPath,
 }
@@ -140,7 +154,7 @@ pub struct ContactSettings {
 }
 
 /// Outer dimensions, m.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
     /// Between the pulling faces of the couplers, m.
@@ -155,6 +169,103 @@ pub struct Outline {
     /// Height above rail, m.
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
     pub height: f64,
+    /// Cross-section of the car body as points y, z (right, down), m; the left half follows by mirroring.
+    #[serde(default)]
+    pub section: Vec<[f64; 2]>,
+}
+
+/// A piece of equipment: its mass is part of its body's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Equipment {
+    /// Name, one for each piece.
+    pub name: String,
+    /// The body or wheelset that it is fixed to.
+    pub body: String,
+    /// Mass, kg, of which its body's mass already consists.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "unit" = "kg"))]
+    pub mass: f64,
+    /// Centre in vehicle axes, m.
+    pub position: [f64; 3],
+    /// Length, width, height, m.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "unit" = "m"))]
+    pub size: [f64; 3],
+}
+
+/// What a body looks like.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Shape {
+    /// A box.
+    Box {
+        /// The body or wheelset.
+        body: String,
+        /// Centre in vehicle axes, m.
+        position: [f64; 3],
+        /// Length, width, height, m.
+        #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+        size: [f64; 3],
+    },
+    /// A round bar or tank.
+    Cylinder {
+        /// The body or wheelset.
+        body: String,
+        /// Middle of its axis in vehicle axes, m.
+        position: [f64; 3],
+        /// Direction of its axis: along x, y or z.
+        axis: Axis,
+        /// Radius, m.
+        #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+        radius: f64,
+        /// Length, m.
+        #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+        length: f64,
+    },
+    /// A line through points.
+    Line {
+        /// The body or wheelset.
+        body: String,
+        /// Points in vehicle axes, m.
+        #[schemars(length(min = 2))]
+        points: Vec<[f64; 3]>,
+    },
+}
+
+/// An axis of the vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// Forward.
+    X,
+    /// To the right.
+    Y,
+    /// Down.
+    Z,
+}
+
+impl Shape {
+    /// The body that it belongs to.
+    #[must_use]
+    pub fn body(&self) -> &str {
+        match self {
+            Self::Box { body, .. } | Self::Cylinder { body, .. } | Self::Line { body, .. } => body,
+        }
+    }
+}
+
+/// A mass that a load case puts on a body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// The body.
+    pub body: String,
+    /// Mass, kg.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "kg"))]
+    pub mass: f64,
+    /// Its centre in vehicle axes, m.
+    pub position: [f64; 3],
 }
 
 /// Traction equipment, one inverter for each bogie.

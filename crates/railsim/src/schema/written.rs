@@ -6,7 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde_json::Value as Json;
 
-use super::vehicle::{ContactSettings, DynamicBrake, Outline, SpeedHold, Traction};
+use super::vehicle::{ContactSettings, DynamicBrake, Equipment, Load, Outline, Shape, SpeedHold, Traction};
 use crate::connection::Law;
 
 fn inertia_schema(_: &mut SchemaGenerator) -> Schema {
@@ -69,6 +69,18 @@ pub(super) struct WrittenVehicle {
     pub traction: Option<Traction>,
     /// Dynamic brake.
     pub dynamic_brake: Option<DynamicBrake>,
+    /// What stands on or hangs under the bodies, for drawings.
+    #[serde(default)]
+    pub equipment: Vec<Equipment>,
+    /// Shapes of the bodies, for drawings and outlines.
+    #[serde(default)]
+    pub shape: Vec<Shape>,
+    /// Load cases: extra masses by name of the case.
+    #[serde(default)]
+    pub load_case: BTreeMap<String, Vec<Load>>,
+    /// Vehicle files whose tables and lists are taken in before those of this file, seen from this file.
+    #[serde(default, rename = "include")]
+    pub _include: Vec<String>,
 }
 
 fn default_track() -> String {
@@ -114,6 +126,9 @@ pub(super) struct WrittenBody {
     pub inertia: [f64; 3],
     /// Centre of mass in vehicle axes, m: origin at the vehicle's centre at top of rail, z down.
     pub position: [f64; 3],
+    /// Moves along the design track at the speed asked for, whatever acts on it: the frame of a test rig.
+    #[serde(default)]
+    pub guided: bool,
 }
 
 /// A wheelset with two rigid wheels.
@@ -156,6 +171,11 @@ pub(super) struct WrittenConnection {
     /// Takes part in carrying the vehicle: its preload is solved so that the vehicle stands at its design height.
     #[serde(default)]
     pub carries_weight: bool,
+    /// Force on the second body in the design position, in the connection's own axes, N, instead of a solved one.
+    pub preload: Option<[f64; 3]>,
+    /// Roll, pitch and yaw by which the connection's own axes are turned out of the vehicle's, rad; applied as
+    /// yaw, then roll, then pitch.
+    pub axes: Option<[f64; 3]>,
     /// The law.
     #[serde(flatten)]
     pub law: Law,

@@ -102,6 +102,25 @@ impl Segment {
         }
     }
 
+    /// The same segment with a share of its curvature, cant and gradient.
+    pub(crate) fn scaled(&self, share: f64) -> Self {
+        match (self, self.values()) {
+            (Self::Tangent(t), Some(v)) => Self::Tangent(Tangent {
+                length: t.length,
+                cant_mm: share * v.cant_mm,
+                gradient: share * v.gradient,
+            }),
+            (Self::Curve(c), Some(v)) => Self::Curve(Curve {
+                length: c.length,
+                curvature: Some(share * v.curvature),
+                radius: None,
+                cant_mm: share * v.cant_mm,
+                gradient: share * v.gradient,
+            }),
+            _ => *self,
+        }
+    }
+
     fn faults(&self, at: &KeyPath, faults: &mut Vec<Fault>) {
         require(faults, at.key("length"), self.length(), |l| l > 0.0, "above 0 m");
         if let Self::Curve(curve) = self {

@@ -1,0 +1,124 @@
+//! What holds between the keys of `run`: which of them a kind of run needs, which it has no use for.
+
+use super::check;
+use super::node::Node;
+use super::run::{Load, Run, RunKind, Search};
+use crate::error::Fault;
+
+/// Keys that only some kinds of run have a use for, with those kinds.
+const OWNED: [(&str, &[RunKind]); 6] = [
+    ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
+    ("hold", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
+    ("speeds", &[RunKind::Modal]),
+    ("load", &[RunKind::QuasiStatic]),
+    ("load_steps", &[RunKind::QuasiStatic]),
+    ("search", &[RunKind::CriticalSpeed]),
+];
+
+/// Speeds that a search looks at, at most; more is a slip of the pen.
+const MOST_SPEEDS: f64 = 1000.0;
+
+/// Every fault of relation; those of structure are said elsewhere.
+pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
+    // A key that is missing or out of range is said by the structural check, and there is no telling the rest.
+    let Some(run) = check::read::<Run>(node, &mut Vec::new()) else { return };
+    for (key, kinds) in OWNED {
+        if let Some(found) = node.get(key)
+            && !kinds.contains(&run.kind)
+        {
+            let names: Vec<_> = kinds.iter().map(|k| format!("\"{}\"", k.name())).collect();
+            let allowed = format!("this key with run.kind = {}", names.join(", "));
+            faults.push(Fault::new(found.at.clone(), format!("it with \"{}\"", run.kind.name()), allowed));
+        }
+    }
+    let stepped = match (run.kind, &run.search) {
+        (RunKind::Time, _) => true,
+        (RunKind::CriticalSpeed, Some(search)) => !matches!(search, Search::Linear { .. }),
+        _ => false,
+    };
+    if stepped {
+        needs(node, "integrator", "a table with kind = \"heun\", \"rk4\", \"ros2\"", faults);
+        needs(node, "output_step", "a number > 0 s", faults);
+        if run.speed <= 0.0 {
+            at(node, "speed", "a number > 0 m/s", faults);
+        }
+        if !run.hold.is_empty() {
+            at(node, "hold", "nothing where time is stepped", faults);
+        }
+    }
+    match run.kind {
+        RunKind::QuasiStatic => loads(node, &run, faults),
+        RunKind::CriticalSpeed => match &run.search {
+            Some(search) => searching(node, &run, search, faults),
+            None => needs(
+                node,
+                "search",
+                "a table with method = \"linear\", \"ramp_down\", \"bifurcation\"",
+                faults,
+            ),
+        },
+        _ => {}
+    }
+}
+
+fn needs(node: &Node, key: &str, allowed: &str, faults: &mut Vec<Fault>) {
+    if node.get(key).is_none() {
+        faults.push(Fault::new(node.at.key(key), "nothing", allowed));
+    }
+}
+
+/// A fault at a key that is there.
+fn at(node: &Node, key: &str, allowed: &str, faults: &mut Vec<Fault>) {
+    if let Some(found) = node.get(key) {
+        faults.push(Fault::new(found.at.clone(), found.found(), allowed));
+    }
+}
+
+fn loads(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
+    let Some(first) = run.load.first() else {
+        needs(node, "load", "one load or more, each with a path of values", faults);
+        at(node, "load", "one load or more, each with a path of values", faults);
+        return;
+    };
+    let items = node.get("load").map_or(&[][..], Node::items);
+    for (load, item) in run.load.iter().zip(items) {
+        if load.path().len() != first.path().len() {
+            let allowed = format!("{} values, as in the first load: all go in step", first.path().len());
+            at(item, "path", &allowed, faults);
+        }
+        if let Load::Speed { path } = load
+            && path.iter().any(|v| *v <= 0.0)
+        {
+            at(item, "path", "speeds above 0 m/s", faults);
+        }
+    }
+}
+
+fn searching(node: &Node, run: &Run, search: &Search, faults: &mut Vec<Fault>) {
+    let Some(table) = node.get("search") else { return };
+    match search {
+        Search::Linear { range, spacing } => {
+            if range[0] >= range[1] {
+                at(table, "range", "the lower speed first, m/s", faults);
+            } else if spacing.is_some_and(|d| range[1] - range[0] > MOST_SPEEDS * d) {
+                at(table, "spacing", &format!("at most {MOST_SPEEDS} speeds in the range"), faults);
+            }
+        }
+        Search::RampDown { end_speed, disturbance, .. }
+        | Search::Bifurcation { end_speed, disturbance, .. } => {
+            if *end_speed >= run.speed {
+                at(table, "end_speed", &format!("below run.speed = {} m/s", run.speed), faults);
+            }
+            if let Search::Bifurcation { speed_step, .. } = search
+                && run.speed - end_speed > MOST_SPEEDS * speed_step
+            {
+                at(table, "speed_step", &format!("at most {MOST_SPEEDS} speeds"), faults);
+            }
+            if disturbance.values().all(|v| *v == 0.0) {
+                let allowed =
+                    "a coordinate and by how much, e.g. { \"carbody.y\" = 0.01 }: without it nothing moves";
+                at(table, "disturbance", allowed, faults);
+            }
+        }
+    }
+}
