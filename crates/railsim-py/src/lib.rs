@@ -30,5 +30,5 @@ mod module {
     #[pymodule_export]
     use crate::toml::{toml_line, toml_to_json};
     #[pymodule_export]
-    use crate::vehicle::vehicle_resolve;
+    use crate::vehicle::{vehicle_resolve, vehicle_schema};
 }

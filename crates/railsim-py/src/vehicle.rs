@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 
-use railsim::schema::resolve_summary;
+use railsim::schema::{self, resolve_summary};
 use railsim::{Error, Fault, KeyPath};
 use serde::de::DeserializeOwned;
 
@@ -22,6 +22,12 @@ pub fn vehicle_resolve(
         resolve_summary(&document, &overrides, condition).map(|summary| summary.to_string())
     };
     resolve().map_err(|e| raise(py, e))
+}
+
+/// JSON schema of a vehicle file.
+#[pyfunction]
+pub fn vehicle_schema() -> String {
+    schema::vehicle_schema().to_string()
 }
 
 fn parse<T: DeserializeOwned>(key: &str, text: &str) -> railsim::Result<T> {
