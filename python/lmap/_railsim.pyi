@@ -22,6 +22,8 @@ __all__ = [
     "check_case",
     "equivalent_conicity",
     "fingerprint",
+    "lint_codes",
+    "lint_vehicle",
     "read_profile",
     "run_cases",
     "toml_line",
@@ -131,6 +133,16 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
     overrides in it), `name`, `title`, `design_speed` (m/s), `wheel_radius` (m), `wheel_profile`, `track`,
     `conditions`, `design_condition`, `mass` (kg) and `bodies`. `InputError` with every fault.
     """
+
+def lint_vehicle(document_json: str, overrides_json: str, condition: str | None = None) -> str:
+    """What keeps a vehicle document, its parameters overridden, from being a vehicle: a JSON list of findings.
+
+    Empty for a vehicle: then a case with `run.kind = "lint"` gives the rest. Each finding has `code`, `rule`,
+    `severity`, `subject`, `key`, `path` (the key as a list), `found` and `usual`.
+    """
+
+def lint_codes() -> str:
+    """Every code as a JSON list of `code`, `rule`, `severity` and `summary`."""
 
 def read_profile(text: str, name: str) -> str:
     """The text of a profile file as JSON: `{"points": [[y, z], ...]}`, mm.

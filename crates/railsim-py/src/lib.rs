@@ -7,6 +7,7 @@ mod arrow;
 mod contact;
 mod enter;
 mod errors;
+mod lint;
 mod probe;
 mod run;
 mod toml;
@@ -23,6 +24,8 @@ mod module {
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
+    #[pymodule_export]
+    use crate::lint::{lint_codes, lint_vehicle};
     #[pymodule_export]
     use crate::probe::_run_probes;
     #[pymodule_export]
