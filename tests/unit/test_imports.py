@@ -24,6 +24,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("simulate", "contact", "execute"),
     ("analyse",),
     ("vehicle",),
+    ("lint",),
     ("report",),
     ("prepare",),
     ("check",),

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from lmap.cli import channels, check, list_, modes, run
+from lmap.cli import channels, check, lint, list_, modes, run
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
@@ -47,6 +47,7 @@ def _main(
 # Keep this list sorted by command.
 app.command("channels")(channels.channels)
 app.command("check")(check.check)
+app.command("lint")(lint.lint)
 app.command("list")(list_.list_)
 app.command("modes")(modes.modes)
 app.command("run")(run.run)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from lmap.procedures import hunting
+from lmap.procedures import hunting, lint
 from lmap.procedures.base import CaseFigures, Procedure
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (hunting,)
+PROCEDURES: tuple[Procedure, ...] = (hunting, lint)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 

@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::subject::{Rest, Subject};
-use crate::body::{Pose, Relative, coordinate};
+use crate::body::{Pose, Relative};
 use crate::connection::Law;
 use crate::dynamics::Model;
 use crate::error::KeyPath;
@@ -12,8 +12,6 @@ use crate::math::rotation;
 const WHEELS: f64 = 0.04;
 /// ...and axles by this (LMAP 2B.1: 2 %).
 const AXLES: f64 = 0.02;
-/// Lean at rest that is meant by nobody, rad.
-const LEAN: f64 = 5e-3;
 /// Axle loads, t: light railcars to heavy haul with an excess.
 const AXLE_LOAD: [f64; 2] = [1.5, 45.0];
 /// Growth at rest beyond rounding, 1/s.
@@ -23,7 +21,6 @@ pub(super) fn find(subject: &Subject<'_>, report: &mut Report) {
     match (&subject.rest, subject.model()) {
         (Some(Ok(rest)), Some(model)) => {
             loads(subject, model, rest, report);
-            leaning(subject, model, rest, report);
             stops(subject, model, rest, report);
             falling(model, rest, report);
         }
@@ -69,20 +66,6 @@ fn loads(subject: &Subject<'_>, model: &Model, rest: &Rest, report: &mut Report)
         let usual = format!("{} to {} t", AXLE_LOAD[0], AXLE_LOAD[1]);
         let found = format!("{tonnes:.2} t on each axle");
         report.add("LM807", &subject.case.vehicle.name, KeyPath::of("vehicle"), found, usual);
-    }
-}
-
-fn leaning(subject: &Subject<'_>, model: &Model, rest: &Rest, report: &mut Report) {
-    let map = model.map();
-    for (i, thing) in subject.things.iter().enumerate().filter(|(_, t)| !t.is_wheelset && !t.guided) {
-        let q = &rest.x[map.q(i)];
-        for (angle, name) in [(coordinate::PHI, "roll"), (coordinate::THETA, "pitch")] {
-            if q[angle].abs() > LEAN {
-                let found = format!("{:.1} mrad of {name}", 1e3 * q[angle]);
-                let usual = format!("below {} mrad", 1e3 * LEAN);
-                report.add("LM805", thing.name, thing.key.clone(), found, usual);
-            }
-        }
     }
 }
 
