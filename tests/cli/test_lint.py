@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
 import sys
@@ -158,13 +159,11 @@ def test_a_mutated_file_gives_findings_or_a_message(data: st.DataObject, place: 
             lines.insert(at, lines[at])
         elif "=" in lines[at]:
             key = lines[at].split("=")[0]
-            number = data.draw(st.sampled_from(["0.0", "-1.0", "1e12", "1e-12", "[]", "true"]))
-            lines[at] = f"{key}= {number if way == 'number' else '"nothing"'}"
+            values = ["0.0", "-1.0", "1e12", "1e-12", "[]", "true"] if way == "number" else ['"nothing"']
+            lines[at] = f"{key}= {data.draw(st.sampled_from(values))}"
     file = place / "mutated.toml"
     file.write_text("\n".join(lines), encoding="utf-8")
-    try:
+    with contextlib.suppress(InputProblem):
         for one in lint(file):
             assert one.code.startswith("LM")
             assert "nan" not in one.found.lower()
-    except InputProblem as error:
-        assert str(error)

@@ -151,6 +151,9 @@ fn the_example_of_every_code_triggers_it_and_nothing_else() {
         for f in &new {
             println!("{} [{}] {}: {} | {}", f.code.code, f.subject, f.key, f.found, f.usual);
         }
+        if new.is_empty() {
+            println!("{}: nothing of {after:?}", section.code);
+        }
         let codes: BTreeSet<&str> = new.iter().map(|f| f.code.code).collect();
         if codes != BTreeSet::from([&section.code[..]]) {
             wrong.push(format!("{}: {codes:?}", section.code));

@@ -37,6 +37,8 @@ def quantities(spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, p
 def _counts(frame: pl.DataFrame) -> pl.DataFrame:
     import polars as pl
 
+    if not {"severity", "code"} <= set(frame.columns):
+        return frame  # no frame of findings: its criteria cannot be judged
     severity = pl.col("severity")
     return frame.select(
         t=pl.lit(0.0),

@@ -83,8 +83,9 @@ pub const CODES: [Code; 47] = [
     warning("LM205", "duplicate-connection", "two equal connections between the same points"),
     error("LM301", "zero-length", "an element along its line whose ends meet"),
     warning("LM302", "too-long", "an element much longer than others of its kind").after(&["LM404"]),
-    warning("LM303", "far-end", "a connection that ends far from its body").after(&["LM307", "LM4", "LM501"]),
-    warning("LM304", "far-sensor", "a sensor far from its body").after(&["LM307", "LM4", "LM501"]),
+    warning("LM303", "far-end", "a connection that ends far from its body")
+        .after(&["LM307", "LM4", "LM501", "LM502"]),
+    warning("LM304", "far-sensor", "a sensor far from its body").after(&["LM307", "LM4", "LM501", "LM502"]),
     error("LM305", "wheels-off-rail", "wheels that are not above the rails").after(&["LM404"]),
     error("LM306", "wheelsets-overlap", "two wheelsets nearer to each other than their wheels let them")
         .after(&["LM404"]),
@@ -110,7 +111,7 @@ pub const CODES: [Code; 47] = [
     error("LM702", "too-soft", "a suspension that its load deflects by more than 0.5 m").after(BROKEN),
     warning("LM703", "deflection", "an unusual static deflection").after(BROKEN),
     warning("LM704", "undamped", "a suspension without damping").after(BROKEN),
-    warning("LM705", "over-critical", "a suspension damped beyond the critical value").after(UNSOUND),
+    warning("LM705", "over-critical", "a suspension damped beyond twice the critical value").after(UNSOUND),
     warning("LM706", "no-travel", "a damper held still by a stiff connection beside it").after(UNSOUND),
     error("LM801", "no-balance", "the vehicle does not stand").after(UNSOUND),
     warning("LM802", "wheel-loads", "wheels of an axle that carry unequal loads").after(LIFTED),

@@ -45,10 +45,10 @@ fn held(subject: &Subject<'_>, report: &mut Report) {
                 "connections that hold a body",
             );
         } else if !connected[i] {
-            let found = format!("{own} connections, none of which leads to a wheelset");
+            let found = format!("{own} connection(s) that lead to no wheelset");
             report.add("LM202", thing.name, thing.key.clone(), found, "a way to the wheels");
         } else if !carried[i] {
-            let found = format!("{own} connections, none of which carries its weight to the wheels");
+            let found = format!("{own} connection(s) that carry no weight to the wheels");
             let usual = "`carries_weight = true` on the springs below it";
             report.add("LM203", thing.name, thing.key.clone(), found, usual);
         }

@@ -20,6 +20,8 @@ const DEFLECTION: [f64; 2] = [1e-3, 0.3];
 const SLOWEST: f64 = 1.0;
 /// Up to here vehicles are damped by their dampers, Hz: above it a stiff spring beside a damper does not matter.
 const DAMPED_BELOW: f64 = 100.0;
+/// Share of critical damping above which it is a slip or a lock: good bogies reach 1 and a little more against their own mass.
+const OVERDAMPED: f64 = 2.0;
 const AXES: [&str; 3] = ["longitudinal", "lateral", "vertical"];
 
 pub(super) fn find(subject: &Subject<'_>, report: &mut Report) {
@@ -89,7 +91,7 @@ fn damped(subject: &Subject<'_>, model: &Model, stage: &Stage, report: &mut Repo
         if c <= 0.0 && !stage.remembers {
             let found = format!("{axis} stiffness of {hz:.1} Hz and no damping");
             report.add("LM704", format!("{names}, {axis}"), place(subject, stage), found, "some damping");
-        } else if ratio > 1.0 {
+        } else if ratio > OVERDAMPED {
             let found = format!("{:.0} % of the critical damping, {axis} at {hz:.1} Hz", 100.0 * ratio);
             report.add("LM705", format!("{names}, {axis}"), place(subject, stage), found, "5 to 60 %");
         }
