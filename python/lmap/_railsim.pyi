@@ -29,6 +29,8 @@ __all__ = [
     "hertz",
     "inspect_profile",
     "kalker_coefficients",
+    "lint_codes",
+    "lint_vehicle",
     "non_elliptic",
     "pair_conicity",
     "profile_quality",
@@ -149,6 +151,16 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
 
 def vehicle_schema() -> str:
     """JSON schema of a vehicle file as JSON text."""
+
+def lint_vehicle(document_json: str, overrides_json: str, condition: str | None = None) -> str:
+    """What keeps a vehicle document, its parameters overridden, from being a vehicle: a JSON list of findings.
+
+    Empty for a vehicle: then a case with `run.kind = "lint"` gives the rest. Each finding has `code`, `rule`,
+    `severity`, `subject`, `key`, `path` (the key as a list), `found` and `usual`.
+    """
+
+def lint_codes() -> str:
+    """Every code as a JSON list of `code`, `rule`, `severity` and `summary`."""
 
 def read_profile(text: str, name: str, options_json: str = "{}") -> str:
     """The text of a profile file as JSON: `{"points": [[y, z], ...]}`, mm.

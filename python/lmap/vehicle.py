@@ -112,6 +112,25 @@ def starter(name: str, model: str) -> str:
     return head + renamed
 
 
+def unreadable(
+    document: toml.Document, overrides: Mapping[str, Any], condition: str | None
+) -> list[dict[str, Any]]:
+    """What keeps a document from being a vehicle, as findings of the core; empty for a vehicle."""
+    railsim = toml.core()
+    try:
+        text = railsim.lint_vehicle(json.dumps(document.data), json.dumps(dict(overrides)), condition)
+    except railsim.InputError as error:
+        raise InputProblem(toml.problems_of_core(error)) from None
+    found: list[dict[str, Any]] = json.loads(text)
+    return found
+
+
+def lint_codes() -> list[dict[str, str]]:
+    """Every code of `lmap lint`: `code`, `rule`, `severity`, `summary`."""
+    codes: list[dict[str, str]] = json.loads(toml.core().lint_codes())
+    return codes
+
+
 def _located(problem: Problem, document: toml.Document, overrides: Mapping[str, Any]) -> Problem:
     """The fault with the vehicle's file and line; where an override is at fault, its name alone."""
     key = problem.key

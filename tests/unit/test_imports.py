@@ -25,6 +25,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("simulate", "contact", "execute"),
     ("analyse",),
     ("vehicle",),
+    ("lint",),
     ("report",),
     ("prepare",),
     ("check",),

@@ -9,6 +9,7 @@ mod creep;
 mod enter;
 mod errors;
 mod geometry;
+mod lint;
 mod patch;
 mod probe;
 mod profile;
@@ -31,6 +32,8 @@ mod module {
     };
     #[pymodule_export]
     use crate::geometry::{contact_map, curve_conicity, pair_conicity, rolling_radius_difference};
+    #[pymodule_export]
+    use crate::lint::{lint_codes, lint_vehicle};
     #[pymodule_export]
     use crate::patch::{contact_gap, hertz, non_elliptic};
     #[pymodule_export]

@@ -30,7 +30,8 @@ pub fn vehicle_schema() -> String {
     schema::vehicle_schema().to_string()
 }
 
-fn parse<T: DeserializeOwned>(key: &str, text: &str) -> railsim::Result<T> {
+/// A JSON argument.
+pub fn parse<T: DeserializeOwned>(key: &str, text: &str) -> railsim::Result<T> {
     let fault = |e: serde_json::Error| Fault::new(KeyPath::of(key), e.to_string(), "a JSON object");
     serde_json::from_str(text).map_err(|e| Error::input(fault(e)))
 }

@@ -20,6 +20,7 @@ pub mod contact;
 pub mod dynamics;
 pub mod error;
 pub mod integrator;
+pub mod lint;
 pub mod math;
 pub mod run;
 pub mod schema;

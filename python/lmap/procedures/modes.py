@@ -1,7 +1,7 @@
 """Modes at rest (LMAP 1.4): is every motion damped, and is none too stiff to be followed in time?
 
-One case for every wheel profile, standing with wheels that stick; a row for each mode. The criteria judge the damping ratio
-and the magnitude of the eigenvalue, which this procedure adds.
+One case for every wheel profile, standing with wheels that stick; a row for each mode. The criteria judge the damping
+ratio and the magnitude of the eigenvalue, which this procedure adds.
 """
 
 from __future__ import annotations
@@ -25,11 +25,12 @@ UNITS: Mapping[str, str] = {"magnitude": "rad/s"}
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """A case for every wheel profile, or for the vehicle's own."""
     found = []
-    for profile in spec.run.wheel_profile or [None]:
+    for profile in spec.run.wheel_profile or [vehicle.wheel_profile or ""]:
         run: dict[str, Any] = {"kind": "modal", **spec.run.rest, "speed": 0.0}
-        if profile is not None or vehicle.wheel_profile:
-            run["wheel_profile"] = profile or vehicle.wheel_profile
-        found.append(build(label=profile or "at rest", vehicle=vehicle, track=spec.track, run=run))
+        if profile:
+            run["wheel_profile"] = profile
+        label = profile if spec.run.wheel_profile else "at rest"
+        found.append(build(label=label, vehicle=vehicle, track=spec.track, run=run))
     return found
 
 

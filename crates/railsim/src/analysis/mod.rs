@@ -28,6 +28,7 @@ pub fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
         RunKind::Equilibrium | RunKind::QuasiStatic => quasi_static::run(case, control),
         RunKind::Modal => modal::run(case, control),
         RunKind::CriticalSpeed => critical_speed::run(case, control),
+        RunKind::Lint => Ok(crate::lint::run(case)),
     }
 }
 
@@ -41,6 +42,7 @@ pub fn channels(case: &Case) -> Result<Vec<Channel>> {
         RunKind::Equilibrium | RunKind::QuasiStatic => quasi_static::columns(case)?,
         RunKind::Modal => modal::columns(case)?,
         RunKind::CriticalSpeed => critical_speed::columns(case)?,
+        RunKind::Lint => crate::lint::columns(),
     };
     Ok(names
         .into_iter()

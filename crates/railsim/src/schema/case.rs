@@ -42,6 +42,8 @@ pub struct Case {
     pub run: Run,
     /// Profiles by name.
     pub profiles: BTreeMap<String, ProfileData>,
+    /// The vehicle as written, overrides in it: what names and references are looked for in.
+    pub written: Json,
 }
 
 /// Which of the two a profile is.
@@ -153,6 +155,7 @@ fn read(json: &Json, faults: &mut Vec<Fault>) -> Option<Case> {
             .into_iter()
             .map(|(name, p)| (name, ProfileData { kind: p.kind, points: millimetres(p.points) }))
             .collect(),
+        written: document.cloned().unwrap_or_default(),
     })
 }
 

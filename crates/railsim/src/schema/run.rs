@@ -24,6 +24,8 @@ pub enum RunKind {
     Modal,
     /// The speed above which the vehicle hunts.
     CriticalSpeed,
+    /// What looks wrong in the vehicle's description.
+    Lint,
 }
 
 impl RunKind {
@@ -36,6 +38,7 @@ impl RunKind {
             Self::QuasiStatic => "quasi_static",
             Self::Modal => "modal",
             Self::CriticalSpeed => "critical_speed",
+            Self::Lint => "lint",
         }
     }
 }
