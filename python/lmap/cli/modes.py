@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 MOST_SPEEDS = 1000
 """Speeds of a root locus; more is a slip of the pen."""
 
+GROWS = 1e-6
+"""Real parts up to this (1/s) are rounding of a motion that does not change."""
+
 MOVES = 0.3
 """Coordinates that move by this share of the most moved one are named in the table."""
 
@@ -126,7 +129,10 @@ def _moving(row: dict[str, Any]) -> str:
         for name, value in row.items()
         if name.startswith("re.")
     }
-    most = sorted(sizes.items(), key=lambda item: -item[1])[:3]
+    # More than 1 is an axle's angle, whose rim travels less: it only rolls along.
+    most = sorted(((name, size) for name, size in sizes.items() if size < 1.001), key=lambda item: -item[1])[
+        :3
+    ]
     return ", ".join(f"{name} {size:.2f}" for name, size in most if size >= MOVES)
 
 
@@ -137,7 +143,9 @@ def _tables(vehicle: Vehicle, frame: pl.DataFrame, speeds: list[float], below_hz
 
     console = Console()
     console.print(f"{vehicle.data.title} ({vehicle.data.name})", style="bold", highlight=False)
-    seen = frame.filter((pl.col("frequency") > 0.0) | (pl.col("real") > 0.0), pl.col("frequency") <= below_hz)
+    seen = frame.filter(
+        (pl.col("frequency") > 0.0) | (pl.col("real") > GROWS), pl.col("frequency") <= below_hz
+    )
     for speed in dict.fromkeys(speeds):
         rows = seen.filter((pl.col("v") * 3.6 - speed).abs() < 1e-6)
         title = "standing, wheels stick" if speed == 0.0 else f"rolling at {speed:g} km/h"
@@ -146,7 +154,7 @@ def _tables(vehicle: Vehicle, frame: pl.DataFrame, speeds: list[float], below_hz
             table.add_column(heading, justify="left" if heading == "mode" else "right")
         table.add_column("moves (m, rad)")
         for row in rows.iter_rows(named=True):
-            style = "bold red" if row["real"] > 0.0 else None
+            style = "bold red" if row["real"] > GROWS else None
             damping = f"{100.0 * row['damping_ratio']:.1f}"
             table.add_row(row["name"], f"{row['frequency']:.3f}", damping, _moving(row), style=style)
         console.print(table)

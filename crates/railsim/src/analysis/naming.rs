@@ -64,6 +64,9 @@ impl Group {
 /// The name of a mode with the given shape.
 pub(super) fn name(model: &Model, speed: f64, eigenvalue: Complex<f64>, shape: &[Complex<f64>]) -> String {
     let [car, bogies, others, axles, track] = groups(model, shape);
+    if eigenvalue.norm() < RIGID && stands_displaced(model, shape) {
+        return "displaced, held by friction".into();
+    }
     if eigenvalue.norm() < RIGID {
         let all: Vec<f64> = (0..6)
             .map(|d| [&car, &bogies, &others, &axles].iter().map(|g| g.by_direction()[d]).sum())
@@ -90,6 +93,19 @@ pub(super) fn name(model: &Model, speed: f64, eigenvalue: Complex<f64>, shape: &
     }
     let word = if std::ptr::eq(group, &axles) && direction == THETA { "spin" } else { WORDS[direction] };
     describe(group, direction, word)
+}
+
+/// Whether a motion that takes for ever is none: friction that sticks holds a displaced vehicle where it is, one eigenvalue 0
+/// for each of its memories.
+fn stands_displaced(model: &Model, shape: &[Complex<f64>]) -> bool {
+    let map = model.map();
+    let size = |range: std::ops::Range<usize>| shape[range].iter().map(Complex::norm_sqr).sum::<f64>();
+    let (mut place, mut speed) = (0.0, 0.0);
+    for i in 0..model.count() {
+        place += size(map.q(i));
+        speed += size(map.u(i));
+    }
+    map.memory > 0 && speed < 1e-6 * place
 }
 
 /// Modes of the same name are numbered by frequency.
