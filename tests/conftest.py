@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import shutil
 import sys
 from pathlib import Path
@@ -33,6 +34,30 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("needs_core"):
             item.add_marker(pytest.mark.skip(reason="the compiled core is not built"))
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder with reference data that is not the project's to give away: `LMAP_SHARED`, else `../shared`.
+
+    Skips where there is none.
+    """
+    folder = Path(os.environ.get("LMAP_SHARED") or ROOT.parent / "shared").resolve() / "data"
+    if not folder.is_dir():
+        pytest.skip("no reference data: neither ../shared/data nor LMAP_SHARED/data exists")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def fetched(shared: Path) -> Path:
+    """Profiles and tables from public repositories (sources and licences in their heads): read there, never copied.
+
+    Skips where the folder is absent.
+    """
+    folder = shared / "fetched"
+    if not folder.is_dir():
+        pytest.skip("no fetched reference data: shared/data/fetched does not exist")
+    return folder
 
 
 @pytest.fixture

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lmap import contact, files, toml
-from lmap.errors import InputProblem
+from lmap.errors import InputProblem, Problem
 from lmap.simulate import simulate
 from lmap.spec.case import Case, VehicleData, build, merged
 
@@ -43,7 +44,7 @@ def vehicle_case(
     data = {}
     for profile, key in case.profile_names.items():
         path = first_place(profile, places)
-        points = contact.read_profile(files.read_text(path, "profile"), profile)
+        points = contact.profile_points(files.read_text(path, "profile"), profile)
         data[profile] = {"kind": "wheel" if key[-1] == "wheel_profile" else "rail", **points}
     return case.with_profiles(data)
 
@@ -52,6 +53,10 @@ def modes_case(
     vehicle: VehicleData, beside: Path, speeds: Sequence[float], *, friction: float = FRICTION
 ) -> Case:
     """The case that gives a vehicle's modes at each of the speeds (m/s)."""
+    wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed >= 0.0)]
+    if wrong or not speeds:
+        found = f"{wrong[0]} m/s" if wrong else "no speed"
+        raise InputProblem(Problem(key=("speed",), found=found, allowed="m/s from 0 up, one or more"))
     run = {"kind": "modal", "speed": speeds[0], "speeds": list(speeds), "friction": friction}
     return vehicle_case(vehicle, beside, run, label="modes")
 

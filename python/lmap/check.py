@@ -166,6 +166,13 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         for index, criterion in enumerate(spec.criterion)
         for case, outcome in zip(prepared.cases, outcomes, strict=True)
     )
+    look = prepared.look
+    if look is not None:
+        criteria += tuple(
+            judge(criterion, look.frame, units, index=index, label=look.label, case_hash=look.hash)
+            for index, criterion in enumerate(spec.criterion)
+        )
+        criteria += (look.by_person,)
     cases = tuple(
         CaseResult(
             label=case.label,
@@ -195,6 +202,7 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         cases=cases,
         inputs=prepared.inputs,
         overrides=prepared.loaded.settings,
+        drawing=None if look is None else look.drawing,
     )
 
 
@@ -204,14 +212,14 @@ def _core() -> str:
     return core_version()
 
 
-def report_folder(given: str | Path) -> Path:
+def report_folder(given: str | Path, option: str = "--report") -> Path:
     """The folder for a report, if it is one or can become one; asked before anything runs."""
     folder = Path(given)
     nearest = folder.absolute()
     try:
         if folder.exists() and not folder.is_dir():
             raise InputProblem(
-                Problem(key=("--report",), found=f"{files.shown(folder)}, a file", allowed="a folder")
+                Problem(key=(option,), found=f"{files.shown(folder)}, a file", allowed="a folder")
             )
         while not nearest.exists():
             nearest = nearest.parent
@@ -220,8 +228,24 @@ def report_folder(given: str | Path) -> Path:
         writable = False
     if not writable:
         found = f"{files.shown(folder)}, where nothing can be written"
-        raise InputProblem(Problem(key=("--report",), found=found, allowed="a folder"))
+        raise InputProblem(Problem(key=(option,), found=found, allowed="a folder"))
     return folder
+
+
+def write_page(path: Path, content: bytes) -> None:
+    """One page, whole or not at all; its folder is made where it is missing."""
+    created: list[Path] = []
+    try:
+        _make_folder(path.parent, created)
+        files.write(path, content)
+    except OSError as error:
+        raise LmapError(
+            f"the page cannot be written to {files.shown(path)}: {error.strerror or error}"
+        ) from error
+    finally:
+        for one in reversed(created):
+            with contextlib.suppress(OSError):  # what holds something stays
+                one.rmdir()
 
 
 def write_report(acceptance: Acceptance, folder: Path) -> None:

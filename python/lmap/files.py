@@ -8,7 +8,8 @@ the file's suffix is a path, seen from the file that names it.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -112,3 +113,18 @@ def read_text(path: Path, noun: str) -> str:
 def sha256(text: str) -> str:
     """SHA-256 of a text as UTF-8, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def write(path: Path, content: bytes) -> None:
+    """Writes a file whole or not at all."""
+    put(path, lambda temporary: temporary.write_bytes(content))
+
+
+def put(path: Path, write: Callable[[Path], object]) -> None:
+    """Lets a file be written under a temporary name, then renames it: never half a file, not on a full disk either."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -11,7 +11,7 @@ from lmap import contact, files, procedures, toml
 from lmap.analyse import first_place, vehicle_case
 from lmap.criteria.chain import signal_problems
 from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
-from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Procedure
+from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Look, Looking, Procedure
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
@@ -34,6 +34,8 @@ class Prepared:
     """What the criteria can judge, by name."""
     facts: tuple[Fact, ...]
     inputs: tuple[InputFile, ...]
+    look: Look | None = None
+    """What a procedure without cases sees in the vehicle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,11 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
     procedure = _procedure(loaded)
     vehicle = _vehicle(loaded)
     spec, base = _with_base_track(loaded, vehicle)
+    if isinstance(procedure, Looking):
+        return _looked_at(loaded, spec, vehicle, procedure, base)
+    if spec.sign_off is not None:
+        allowed = f"none: procedure {procedure.NAME} waits for nobody"
+        raise InputProblem(loaded.locate(Problem(key=("sign_off",), found="a sign-off", allowed=allowed)))
     try:
         cases = procedure.cases(spec, vehicle.data)
     except InputProblem as error:
@@ -96,6 +103,26 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
         channels=known,
         facts=tuple(procedure.facts(spec, figures)),
         inputs=_inputs(sources),
+    )
+
+
+def _looked_at(
+    loaded: LoadedSpec, spec: Spec, vehicle: Vehicle, procedure: Looking, base: toml.Document | None
+) -> Prepared:
+    """A spec whose procedure simulates nothing."""
+    look = procedure.look(spec, vehicle.data, loaded.parameters)
+    known = {name: Channel(name, unit, "") for name, unit in look.units.items()}
+    _check_signals(loaded, spec, known)
+    return Prepared(
+        loaded=loaded,
+        spec=spec,
+        vehicle=vehicle,
+        procedure=procedure,
+        cases=(),
+        channels=known,
+        facts=tuple(procedure.facts(spec, [])),
+        inputs=_inputs(_Sources(loaded, vehicle, base, {})),
+        look=look,
     )
 
 
@@ -185,7 +212,7 @@ def _profiles(
                 continue
             found[name] = (path, text)
             try:
-                points = contact.read_profile(text, name)
+                points = contact.profile_points(text, name)
             except InputProblem as error:
                 problems += [problem.at(file=files.shown(path)) for problem in error.problems]
                 continue
@@ -285,5 +312,15 @@ def vehicle_channels(name: str) -> list[Channel]:
         "integrator": {"kind": "heun", "step": 0.001},
         "output_step": 0.005,
     }
-    track = {"length": 100.0}
-    return channels(vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track=track))
+    case = vehicle_case(vehicle.data, vehicle.document.path, run, label="channels", track={"length": 100.0})
+    try:
+        return channels(case)
+    except InputProblem as error:
+        raise InputProblem(
+            [
+                located(problem, problem.key[1:], vehicle.document, {})
+                if problem.key[:1] == ("vehicle",)
+                else problem
+                for problem in error.problems
+            ]
+        ) from None

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from lmap import files, toml
+from lmap import files, include, toml
 from lmap.errors import InputProblem, KeyPath, Problem
 from lmap.spec.case import VehicleData
 
@@ -44,7 +44,7 @@ class Vehicle:
         `beside` is the file or folder that names it, the working folder by default. Raises `InputProblem`.
         """
         place = Path.cwd() if beside is None else Path(beside)
-        document = toml.load(files.find(files.VEHICLE, str(name), place), "vehicle")
+        document = include.load(files.find(files.VEHICLE, str(name), place))
         return cls(document, _resolve(document, overrides or {}, condition))
 
     def modes(self, speed: float | Sequence[float] = 0.0, *, friction: float = 0.4) -> pl.DataFrame:
@@ -105,6 +105,30 @@ def lint_codes() -> list[dict[str, str]]:
     """Every code of `lmap lint`: `code`, `rule`, `severity`, `summary`."""
     codes: list[dict[str, str]] = json.loads(toml.core().lint_codes())
     return codes
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of a vehicle file, with which an editor completes and checks it."""
+    found: dict[str, Any] = json.loads(toml.core().vehicle_schema())
+    return found
+
+
+def starter(name: str, model: str) -> str:
+    """The text of a vehicle that ships, under another name: what `lmap new vehicle` writes."""
+    if re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) is None:
+        raise InputProblem(
+            Problem(found=f'the name "{name}"', allowed="a letter, then letters, digits and _")
+        )
+    path = files.find(files.VEHICLE, model, Path.cwd())
+    text = files.read_text(path, "vehicle")
+    toml.load(path, "vehicle")
+    head = f"# A copy of {path.stem}, to be changed into {name}.\n"
+    renamed, count = re.subn(r'(?m)^name = "[^"\n]*"', f'name = "{name}"', text, count=1)
+    if count == 0:
+        raise InputProblem(
+            Problem(file=files.shown(path), found="no name at its head", allowed='name = "..."')
+        )
+    return head + renamed
 
 
 def _located(problem: Problem, document: toml.Document, overrides: Mapping[str, Any]) -> Problem:

@@ -169,6 +169,8 @@ class SpecVerdict:
     inputs: tuple[InputFile, ...] = ()
     overrides: Mapping[str, Any] = field(default_factory=dict)
     """What `[set]` and `--set` changed."""
+    drawing: Mapping[str, Any] | None = None
+    """Plain data of the vehicle's 3D page, where the procedure draws one."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,6 +20,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("signals",),
     ("criteria",),
     ("spec",),
+    ("view",),
     ("procedures",),
     ("simulate", "contact", "execute"),
     ("analyse",),

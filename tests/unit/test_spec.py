@@ -45,7 +45,7 @@ def edited(old: str, new: str) -> str:
             'vehicel = "toy"',
             (
                 '4: vehicel: found an unknown key "vehicel"; allowed: condition, criterion, id, procedure, run, '
-                'set, title, track, vehicle (did you mean "vehicle"?)'
+                'set, sign_off, title, track, vehicle (did you mean "vehicle"?)'
             ),
         ),
         (
@@ -127,6 +127,12 @@ def test_a_setting_without_key_or_value_is_refused(bad: str) -> None:
 def test_a_key_that_is_set_twice_is_refused(settings: list[str]) -> None:
     with pytest.raises(InputProblem, match=r"^--set: found .* after .*; allowed: each key once"):
         overrides.parse(settings)
+
+
+def test_two_ways_of_writing_the_speed_are_refused() -> None:
+    with pytest.raises(InputProblem, match=r"run\.speed.*run\.speed_kmh"):
+        overrides.checked({"run.speed": 30.0, "run.speed_kmh": 100.0})
+    assert overrides.checked({"run.speed_kmh": 100.0}) == {"run.speed_kmh": 100.0}
 
 
 def test_a_setting_that_is_not_finite_is_refused() -> None:

@@ -46,20 +46,33 @@ impl Frame {
                 json!({"kind": "diverged", "t": t, "s": s, "message": error.to_string()})
             }
         };
-        let mut fields = Vec::with_capacity(outcome.columns.len());
-        let mut arrays: Vec<ArrayRef> = Vec::with_capacity(outcome.columns.len());
-        for (name, values) in outcome.columns {
-            fields.push(Field::new(name, DataType::Float64, false));
-            arrays.push(Arc::new(Float64Array::new(values.into(), None)));
-        }
-        for (name, texts) in outcome.labels {
-            fields.push(Field::new(name, DataType::Utf8, false));
-            arrays.push(Arc::new(StringArray::from(texts)));
-        }
-        let batch = RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
-            .map_err(|e| InternalError::new_err(format!("columns of a frame: {e}")))?;
+        let batch = batch(outcome.columns, outcome.labels)?;
         Ok(Self { batch, ended, statistics: outcome.statistics, wall_s })
     }
+
+    /// Columns that are no run's.
+    ///
+    /// # Errors
+    /// `InternalError` when the columns differ in length.
+    pub fn table(columns: Vec<(String, Vec<f64>)>) -> PyResult<Self> {
+        let ended = json!({"kind": "computed", "t": null, "s": null, "message": null});
+        Ok(Self { batch: batch(columns, Vec::new())?, ended, statistics: json!({}), wall_s: 0.0 })
+    }
+}
+
+fn batch(columns: Vec<(String, Vec<f64>)>, labels: Vec<(String, Vec<String>)>) -> PyResult<RecordBatch> {
+    let mut fields = Vec::with_capacity(columns.len());
+    let mut arrays: Vec<ArrayRef> = Vec::with_capacity(columns.len());
+    for (name, values) in columns {
+        fields.push(Field::new(name, DataType::Float64, false));
+        arrays.push(Arc::new(Float64Array::new(values.into(), None)));
+    }
+    for (name, texts) in labels {
+        fields.push(Field::new(name, DataType::Utf8, false));
+        arrays.push(Arc::new(StringArray::from(texts)));
+    }
+    RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
+        .map_err(|e| InternalError::new_err(format!("columns of a frame: {e}")))
 }
 
 #[pymethods]

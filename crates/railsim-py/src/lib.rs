@@ -5,10 +5,14 @@
 
 mod arrow;
 mod contact;
+mod creep;
 mod enter;
 mod errors;
+mod geometry;
 mod lint;
+mod patch;
 mod probe;
+mod profile;
 mod run;
 mod toml;
 mod vehicle;
@@ -19,15 +23,23 @@ mod module {
     #[pymodule_export]
     use crate::arrow::Frame;
     #[pymodule_export]
-    use crate::contact::{equivalent_conicity, read_profile};
+    use crate::contact::equivalent_conicity;
+    #[pymodule_export]
+    use crate::creep::{creep_forces, kalker_coefficients};
     #[pymodule_export]
     use crate::errors::{
         ConvergenceError, DivergenceError, InputError, InternalError, Interrupted, RailsimError,
     };
     #[pymodule_export]
+    use crate::geometry::{contact_map, curve_conicity, pair_conicity, rolling_radius_difference};
+    #[pymodule_export]
     use crate::lint::{lint_codes, lint_vehicle};
     #[pymodule_export]
+    use crate::patch::{contact_gap, hertz, non_elliptic};
+    #[pymodule_export]
     use crate::probe::_run_probes;
+    #[pymodule_export]
+    use crate::profile::{inspect_profile, profile_quality, read_profile, smooth_profile, write_profile};
     #[pymodule_export]
     use crate::run::{channels, check_case, fingerprint, run_cases, track_extremes, version};
     #[pymodule_export]

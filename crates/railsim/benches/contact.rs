@@ -2,8 +2,11 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use railsim::KeyPath;
-use railsim::contact::creep::{CreepCase, CreepForce, CreepLaw, Creepage, Patch};
-use railsim::contact::geometry_table::{ContactPoint, GeometryTable, Placement};
+use railsim::contact::creep::{
+    CreepCase, CreepForce, CreepLaw, Creepage, Fastrip, KalkerLinear, ModifiedFastsim, Patch, Polach,
+    ShenHedrickElkins, VermeulenJohnson,
+};
+use railsim::contact::geometry_table::{ContactPoint, GeometryTable, MAX_CONTACTS, Placement};
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use std::hint::black_box;
 
@@ -34,6 +37,20 @@ fn contact(criterion: &mut Criterion) {
         b.iter(|| law.forces(black_box(&cases), &mut forces));
     });
     group.throughput(Throughput::Elements(1));
+    for (name, law) in [
+        ("polach", CreepLaw::Polach(Polach { k_a: 0.6, k_s: 0.15 })),
+        ("kalker linear", CreepLaw::KalkerLinear(KalkerLinear {})),
+        ("shen-hedrick-elkins", CreepLaw::ShenHedrickElkins(ShenHedrickElkins {})),
+        ("vermeulen-johnson", CreepLaw::VermeulenJohnson(VermeulenJohnson::default())),
+        (
+            "modified fastsim 10x10",
+            CreepLaw::ModifiedFastsim(ModifiedFastsim { k0: 0.54, alpha: 0.02, beta: 0.62, nx: 10, ny: 10 }),
+        ),
+        ("fastrip 20x20", CreepLaw::Fastrip(Fastrip::default())),
+    ] {
+        let creepage = Creepage { xi: 2e-3, eta: 1e-3, phi: 0.2 };
+        group.bench_function(name, |b| b.iter(|| law.force(black_box(&patch), black_box(&creepage), 0.4)));
+    }
     let (wheel, rail) = (shipped("anzr1_worn_2", ProfileKind::Wheel), shipped("as60", ProfileKind::Rail));
     let placement = Placement {
         gauge: 1.435,
@@ -47,7 +64,7 @@ fn contact(criterion: &mut Criterion) {
     let Ok(table) = GeometryTable::build(&wheel, &rail, &placement) else { panic!("no table") };
     // near flange contact both gaps are small
     let gap = table.gap(7.4e-3, 1e-3).unwrap_or_default();
-    let mut out = [ContactPoint::default(); 2];
+    let mut out = [ContactPoint::default(); MAX_CONTACTS];
     for (name, dy, dz) in [
         ("lookup, no contact", 1e-3, -1e-3),
         ("lookup, one contact", 1e-3, table.gap(1e-3, 1e-3).map_or(0.0, |g| g[0] + 1e-4)),

@@ -10,6 +10,7 @@ use railsim::math::Vec3;
 use railsim::run::{Ended, Free, Outcome};
 use serde_json::{Value, json};
 
+#[allow(clippy::print_stdout)] // ours beside theirs
 fn compare(what: &str, ours: f64, theirs: f64, tolerance: f64) {
     let off = ours / theirs - 1.0;
     println!("{what}: ours {ours:.6}, theirs {theirs:.6} ({:+.3} %)", 100.0 * off);
@@ -350,4 +351,43 @@ fn a_rigid_vehicle_on_textbook_contact_transfers_its_load_exactly() {
     let theirs = (at("unbalanced") * height / 9.80665 + lean) / 0.75 + gyroscopic;
     println!("lean {:.2} mm, gyroscopic {gyroscopic:.5}", 1e3 * lean);
     compare("load transfer", transfer, theirs, 2e-3);
+}
+
+/// A slider of 8 kN beside the secondary springs, bogies held: there and back again differ by twice the friction, and the way
+/// comes back to itself.
+#[test]
+fn friction_shows_its_hysteresis_along_the_path() {
+    let mut value = common::coco134();
+    let connections = value["vehicle"]["connection"].as_array_mut();
+    let slider = json!({
+        "name": "slider", "kind": "friction", "between": ["bogie1", "carbody"], "position": [6.6, 0.0, -1.05],
+        "along": "y", "force": 8e3, "stiffness": 2e7
+    });
+    match connections {
+        Some(list) => list.push(slider),
+        None => value["vehicle"]["connection"] = json!([slider]),
+    }
+    let hold: Vec<String> = ["bogie1", "bogie2"]
+        .iter()
+        .flat_map(|b| ["x", "y", "z", "phi", "theta", "psi"].map(|c| format!("{b}.{c}")))
+        .chain(["carbody.phi", "carbody.psi", "carbody.theta"].map(str::to_owned))
+        .collect();
+    value["run"] = json!({
+        "kind": "quasi_static", "speed": 0.0, "friction": 0.4, "load_steps": 10, "hold": hold,
+        "load": [{ "kind": "displacement", "coordinate": "carbody.y", "path": [0.0, 0.02, -0.02, 0.02] }]
+    });
+    let outcome = run(&common::case(&value), &Free).unwrap();
+    assert_eq!(outcome.ended, Ended::Complete);
+    let (y, force) = (
+        common::column(&outcome.columns, "carbody.y"),
+        common::column(&outcome.columns, "carbody.y.reaction"),
+    );
+    for (y, f) in y.iter().zip(force) {
+        println!("{:7.2} mm {:9.1} N", 1e3 * y, f);
+    }
+    // Rows: 0..10 out, 10..20 back, 20..30 out again; 15 and 25 pass the middle.
+    compare("width of the loop, N", force[25] - force[15], 16e3, 1e-3);
+    compare("the loop closes, N", force[30], force[10], 1e-6);
+    // Beside it the springs: 8 x 1.5e5, pivots 2 x 4e6 N/m.
+    compare("springs, N", force[10] - 8e3, 0.02 * (8.0 * 1.5e5 + 2.0 * 4e6), 0.01);
 }

@@ -19,6 +19,7 @@ use railsim::track::{DeviationField, Layout};
 use serde_json::{Value, json};
 
 /// Prints ours beside theirs and fails beyond `tolerance`, a share.
+#[allow(clippy::print_stdout)] // ours beside theirs
 fn compare(what: &str, ours: f64, theirs: f64, tolerance: f64) {
     let off = ours / theirs - 1.0;
     println!("{what}: ours {ours:.6}, theirs {theirs:.6} ({:+.4} %)", 100.0 * off);
@@ -30,18 +31,15 @@ fn body(name: &str, mass: f64, inertia: [f64; 3], position: [f64; 3]) -> RigidBo
 }
 
 fn link(a: usize, b: usize, ends: [&RigidBody; 2], point: [f64; 3], k: [f64; 3], turning: [f64; 3]) -> Link {
-    let mount = Mount {
-        p_A: Vec3::from(point) - ends[0].position,
-        p_B: Vec3::from(point) - ends[1].position,
-        preload: Vec3::zeros(),
-    };
+    let [p_A, p_B] = ends.map(|end| Vec3::from(point) - end.position);
+    let mount = Mount::new(p_A, p_B, Vec3::zeros());
     let law = Law::Bushing(Bushing {
         stiffness: k,
         damping: [0.0; 3],
         rotational_stiffness: Some(turning),
         rotational_damping: None,
     });
-    Link { name: format!("{a}-{b}"), a, b, mount, law }
+    Link { name: format!("{a}-{b}"), a, b, mount, law, axes: None, memory: 0..0 }
 }
 
 fn model(bodies: Vec<RigidBody>, wheelsets: Vec<Wheelset>, links: Vec<Link>, gravity: f64) -> Model {

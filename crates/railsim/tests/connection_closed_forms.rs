@@ -2,6 +2,8 @@
 //!
 //! Two bodies by hand: A stands still, B is moved as a formula asks.
 
+#![allow(clippy::print_stdout)] // both numbers are shown, from helpers too
+
 use railsim::connection::{Along, ForceLaw, Law, Mount, Pair, Pose, RELAXATION_TIME, Relative};
 use railsim::integrator::{Integrator, Stepper, System};
 use railsim::math::Vec3;

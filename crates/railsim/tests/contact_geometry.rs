@@ -3,7 +3,9 @@
 
 use proptest::prelude::*;
 use railsim::KeyPath;
-use railsim::contact::geometry_table::{ContactPoint, GeometryTable, OutOfTable, Placement, Zone};
+use railsim::contact::geometry_table::{
+    ContactPoint, GeometryTable, MAX_CONTACTS, OutOfTable, Placement, Zone,
+};
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use std::sync::LazyLock;
 
@@ -43,7 +45,7 @@ static S1002: LazyLock<GeometryTable> = LazyLock::new(|| {
 
 fn one(table: &GeometryTable, dy: f64, roll: f64, load_depth: f64) -> Vec<ContactPoint> {
     let gap = table.gap(dy, roll).unwrap();
-    let mut out = [ContactPoint::default(); 2];
+    let mut out = [ContactPoint::default(); MAX_CONTACTS];
     let n = table.contacts(dy, roll, gap[0].min(gap[1]) + load_depth, 0.0, &mut out).unwrap();
     out[..n].to_vec()
 }
@@ -216,7 +218,7 @@ fn shares_of_one_contact_add_up_to_one() {
 fn yaw_closes_the_flange_gap_to_second_order() {
     let (dy, roll) = (0.007, 0.0);
     let gap = ANZR1.gap(dy, roll).unwrap();
-    let mut out = [ContactPoint::default(); 2];
+    let mut out = [ContactPoint::default(); MAX_CONTACTS];
     assert_eq!(ANZR1.contacts(dy, roll, gap[1] - 1e-4, 0.0, &mut out).unwrap(), 0);
     assert_eq!(ANZR1.contacts(dy, roll, gap[1] - 1e-4, 0.02, &mut out).unwrap(), 1);
     let flange = out[0];
@@ -227,7 +229,7 @@ fn yaw_closes_the_flange_gap_to_second_order() {
 
 #[test]
 fn leaving_the_table_is_an_error() {
-    let mut out = [ContactPoint::default(); 2];
+    let mut out = [ContactPoint::default(); MAX_CONTACTS];
     for (dy, roll) in [(0.0201, 0.0), (0.0, -0.03), (f64::NAN, 0.0)] {
         let refused = ANZR1.contacts(dy, roll, 0.0, 0.0, &mut out);
         assert!(matches!(refused, Err(OutOfTable { .. })));
@@ -248,13 +250,14 @@ proptest! {
     fn table_is_continuous(dy in -0.0199f64..0.0199, roll in -0.0199f64..0.0199, which in 0..2) {
         let table: &GeometryTable = if which == 0 { &ANZR1 } else { &S1002 };
         let h = 1e-9;
-        let mut p = [ContactPoint::default(); 2];
+        let mut p = [ContactPoint::default(); MAX_CONTACTS];
         let mut q = p;
         let gap = table.gap(dy, roll).unwrap();
         let dz = gap[0].min(gap[1]) + 1e-3;
-        let n = table.contacts(dy, roll, dz, 0.0, &mut p).unwrap();
-        let m = table.contacts(dy + h, roll + h, dz, 0.0, &mut q).unwrap();
-        if n == m {
+        let n = table.contacts(dy, roll, dz, 0.0, &mut p);
+        let m = table.contacts(dy + h, roll + h, dz, 0.0, &mut q);
+        // refused where the wheel would stand on the end of its profile
+        if let (Ok(n), Ok(m)) = (n, m) && n == m {
             for (p, q) in p.iter().zip(&q).take(n) {
                 prop_assert!((p.penetration - q.penetration).abs() < 50.0 * h);
                 // positions may move fast, never jump: 0.1 mm of shift to 30 mm of travel at most
@@ -270,7 +273,11 @@ proptest! {
     #[test]
     fn contacts_are_sane(dy in -0.0199f64..0.0199, roll in -0.0199f64..0.0199, which in 0..2) {
         let table: &GeometryTable = if which == 0 { &ANZR1 } else { &S1002 };
-        for c in one(table, dy, roll, 2e-4) {
+        let gap = table.gap(dy, roll).unwrap();
+        let mut out = [ContactPoint::default(); MAX_CONTACTS];
+        // refused where the wheel would stand on the end of its profile
+        let n = table.contacts(dy, roll, gap[0].min(gap[1]) + 2e-4, 0.0, &mut out).unwrap_or(0);
+        for c in &out[..n] {
             prop_assert!(c.share > 0.0 && c.share <= 1.0 + 1e-9);
             prop_assert!(c.hertz > 1e9 && c.hertz < 1e12, "{:?}", c);
             prop_assert!(c.a1 > 0.0 && c.b1 > 0.0 && c.c11 > 0.0 && c.c22 > 0.0 && c.c23 > 0.0);

@@ -33,7 +33,17 @@ static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn right_hand_side_and_step_allocate_nothing() {
+    // The locomotive, and two vehicles with connections that remember: yaw dampers with end stiffness, dry friction.
+    for vehicle in ["coco134", "bobo86", "wagon2"] {
+        allocates_nothing(vehicle);
+    }
+}
+
+fn allocates_nothing(vehicle: &str) {
     let mut value = common::coco134();
+    value["vehicle"] = common::read_toml(&format!("vehicles/{vehicle}.toml"));
+    value["run"]["wheel_profile"] = value["vehicle"]["wheel_profile"].clone();
+    value["profiles"]["s1002"] = common::profile("s1002", "wheel");
     value["track"]["irregularity"] = json!({
         "kind": "psd", "form": "fra_hamid_yang", "class": 6, "wavelengths": [1.5, 40.0], "seed": 1, "period": 1000.0
     });
@@ -49,6 +59,6 @@ fn right_hand_side_and_step_allocate_nothing() {
             system.rhs(0.0, &x, &mut dx);
             let _ = stepper.step(&mut system, 1e-4 * f64::from(i), &mut x, 1e-4);
         }
-        assert_eq!(COUNT.load(Ordering::Relaxed) - before, 0, "{}", integrator.name());
+        assert_eq!(COUNT.load(Ordering::Relaxed) - before, 0, "{vehicle}, {}", integrator.name());
     }
 }

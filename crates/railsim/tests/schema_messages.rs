@@ -42,7 +42,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "carries_weight = true",
         "carries_wieght = true",
         "56: vehicle.template.axle.connection[0].carries_wieght: found an unknown key; allowed: \
-         between, carries_weight, damping, kind, mirror, name, position, positions, \
+         axes, between, carries_weight, damping, kind, mirror, name, position, positions, preload, \
          rotational_damping, rotational_stiffness, stiffness (did you mean carries_weight?)",
     ),
     (
@@ -94,8 +94,10 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "kind = \"bushing\"",
         "kind = \"bushin\"",
-        "52: vehicle.template.axle.connection[0].kind: found \"bushin\"; allowed: \"anti_roll_bar\", \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \
-         \"friction_plate\", \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" (did you mean bushing?)",
+        "52: vehicle.template.axle.connection[0].kind: found \"bushin\"; allowed: \"anti_roll_bar\", \
+         \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \"friction_plate\", \
+         \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" \
+         (did you mean bushing?)",
     ),
     (
         "between = [\"{axle}\", \"frame\"]",
@@ -169,8 +171,8 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "template = \"axle\"\nat = [\"$axle.x\"",
         "template = \"axel\"\nat = [\"$axle.x\"",
-        "33: vehicle.use[0].template: found \"axel\"; allowed: the name of a [template]: axle (did \
-         you mean axle?)",
+        "33: vehicle.use[0].template: found \"axel\"; allowed: the name of a [template]: axle (did you \
+             mean axle?)",
     ),
     (
         "with = { axle = \"ws1\" }",
@@ -207,7 +209,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "[contact]",
         "[[template.spare.body]]\nname = \"{spare}\"\nmas = 1.0\ninertia = [1.0, 1.0, 1.0]\n\
          position = [0.0, 0.0, 0.0]\n\n[contact]",
-        "67: vehicle.template.spare.body[0].mas: found an unknown key; allowed: inertia, mass, name, \
+        "67: vehicle.template.spare.body[0].mas: found an unknown key; allowed: guided, inertia, mass, name, \
          position (did you mean mass?)\n\
          65: vehicle.template.spare.body[0].mass: found nothing; allowed: a number > 0 kg",
     ),
@@ -237,12 +239,14 @@ fn all_faults_are_said_at_once_and_each_once() {
     assert_eq!(
         said(&text, Some("empty")),
         [
-            "52: vehicle.template.axle.connection[0].kind: found \"spring\"; allowed: \"anti_roll_bar\", \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \
-         \"friction_plate\", \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" (did you mean point_spring?)",
+            "52: vehicle.template.axle.connection[0].kind: found \"spring\"; allowed: \"anti_roll_bar\", \
+             \"bump_stop\", \"bushing\", \"bushing_matrix\", \"coupler\", \"friction\", \"friction_plate\", \
+             \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" \
+             (did you mean point_spring?)",
             "67: vehicle.contact.poisson: found true; allowed: a number >= 0 and < 0.5",
             "3: vehicle.titel: found an unknown key; allowed: body, condition, connection, contact, design_condition, \
-             design_speed_kmh, dynamic_brake, equipment, include, load_case, name, outline, parameters, sensor, shape, speed_hold, template, title, track, \
-             traction, use, wheel_profile, wheelset (did you mean title?)",
+             design_speed_kmh, dynamic_brake, equipment, include, load_case, name, outline, parameters, sensor, \
+             shape, speed_hold, template, title, track, traction, use, wheel_profile, wheelset (did you mean title?)",
             "44: vehicle.template.axle.wheelset[0].mass: found 0 (from $axle.mass); allowed: a number > 0 kg",
             "?: vehicle.title: found nothing; allowed: a text",
         ]
@@ -323,7 +327,11 @@ fn case() -> Value {
 fn cases() -> Vec<(&'static str, Value, &'static str)> {
     vec![
         ("/run/speed", json!(0), "run.speed: found 0; allowed: a number > 0 m/s"),
-        ("/run/friction", json!(1.6), "run.friction: found 1.6; allowed: a number > 0 and <= 1.5"),
+        (
+            "/run/friction",
+            json!(1.6),
+            "run.friction: found 1.6; allowed: a number > 0 and <= 1.5, or a table",
+        ),
         (
             "/run/output_step",
             json!(0.0001),
@@ -437,8 +445,9 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/creep",
             json!({ "kind": "fastism" }),
-            "run.creep.kind: found \"fastism\"; allowed: \"fastsim\", \"kalker_linear\", \"polach\" (did \
-         you mean fastsim?)",
+            "run.creep.kind: found \"fastism\"; allowed: \"fastrip\", \"fastsim\", \"kalker_linear\", \
+             \"modified_fastsim\", \"polach\", \"shen_hedrick_elkins\", \"vermeulen_johnson\" (did you \
+             mean fastsim?)",
         ),
         (
             "/run/spede",

@@ -8,6 +8,8 @@ use railsim::{Error, KeyPath, error::Segment};
 use serde_json::{Map, Value, json};
 
 const COCO134: &str = include_str!("../../../models/vehicles/coco134.toml");
+const BOBO86: &str = include_str!("../../../models/vehicles/bobo86.toml");
+const WAGON2: &str = include_str!("../../../models/vehicles/wagon2.toml");
 const TROLLEY: &str = include_str!("fixtures/trolley.toml");
 
 fn coco134() -> Value {
@@ -273,13 +275,17 @@ proptest! {
     }
 
     #[test]
-    fn no_damage_to_a_good_document_makes_it_panic(pick in any::<prop::sample::Index>(), json in any_json()) {
-        let mut document = toml_to_json(TROLLEY).unwrap();
+    fn no_damage_to_a_good_document_makes_it_panic(
+        pick in any::<prop::sample::Index>(),
+        (text, condition) in prop::sample::select(vec![(TROLLEY, "empty"), (BOBO86, "tare"), (WAGON2, "tare")]),
+        json in any_json(),
+    ) {
+        let mut document = toml_to_json(text).unwrap();
         let mut all = Vec::new();
         pointers(&document, String::new(), &mut all);
         let pointer: &String = pick.get(&all);
         *document.pointer_mut(pointer).unwrap() = json;
-        prop_assert!(judged(Vehicle::resolve(&document, Some("empty"))));
+        prop_assert!(judged(Vehicle::resolve(&document, Some(condition))));
     }
 
     #[test]

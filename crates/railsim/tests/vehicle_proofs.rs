@@ -5,6 +5,7 @@ mod common;
 use railsim::Error;
 use railsim::body::{RigidBody, Wheelset};
 use railsim::contact::creep::CreepLaw;
+use railsim::contact::friction::FrictionField;
 use railsim::contact::geometry_table::{GeometryTable, Placement};
 use railsim::contact::profile::{Profile, ProfileKind};
 use railsim::dynamics::{Contact, Model, SpeedProgram, VehicleSystem, compile, energy, equilibrium};
@@ -59,7 +60,7 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
         law: CreepLaw::default(),
         shear_modulus: 8.2e10,
         dissipation: 1.0,
-        friction: 0.5,
+        friction: FrictionField::constant(0.5),
     };
     let model = Model::new(
         vec![],
@@ -129,7 +130,7 @@ fn undamped() -> Model {
     }
     if let Contact::Profiles { dissipation, friction, .. } = &mut model.contact {
         *dissipation = 0.0;
-        *friction = 0.0;
+        *friction = FrictionField::constant(0.0);
     }
     model
 }

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from lmap.cli import channels, check, lint, list_, modes, run
+from lmap.cli import channels, check, contact, lint, list_, modes, new, run, schema, view
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
@@ -47,10 +47,14 @@ def _main(
 # Keep this list sorted by command.
 app.command("channels")(channels.channels)
 app.command("check")(check.check)
+app.command("contact")(contact.contact)
 app.command("lint")(lint.lint)
 app.command("list")(list_.list_)
 app.command("modes")(modes.modes)
+app.command("new")(new.new)
 app.command("run")(run.run)
+app.command("schema")(schema.schema)
+app.command("view")(view.view)
 
 
 def main() -> NoReturn:

@@ -62,7 +62,8 @@ def modes(
 
     loaded = Vehicle.load(vehicle, overrides=overrides.parse(settings or []), condition=condition)
     default = None if out is None else f"5:{round(2 * 3.6 * loaded.data.design_speed)}:5"
-    speeds = _speeds(speed_kmh or default or f"0,{3.6 * loaded.data.design_speed:g}")
+    usual = f"0,{3.6 * loaded.data.design_speed:g}" if default is None else default
+    speeds = speeds_of(usual if speed_kmh is None else speed_kmh)
     folder = None if out is None else _folder(out)
     frame = loaded.modes([v / 3.6 for v in speeds], friction=friction)
     if folder is not None:
@@ -75,7 +76,7 @@ def modes(
         _tables(loaded, frame, speeds, below_hz)
 
 
-def _speeds(text: str) -> list[float]:
+def speeds_of(text: str) -> list[float]:
     """The speeds that a text lists, km/h."""
     from lmap.errors import InputProblem, Problem
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from lmap.procedures import hunting, lint
-from lmap.procedures.base import CaseFigures, Procedure
+from lmap.procedures import hunting, lint, modes, view
+from lmap.procedures.base import CaseFigures, Look, Looking, Procedure
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (hunting, lint)
+PROCEDURES: tuple[Procedure, ...] = (hunting, lint, modes, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
-__all__ = ["BY_NAME", "PROCEDURES", "CaseFigures", "Procedure"]
+__all__ = ["BY_NAME", "PROCEDURES", "CaseFigures", "Look", "Looking", "Procedure"]

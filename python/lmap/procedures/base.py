@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from lmap.errors import InputProblem, Problem
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
-from lmap.verdict import Fact
+from lmap.verdict import CriterionVerdict, Fact
 
 if TYPE_CHECKING:
     import polars as pl
@@ -51,6 +51,32 @@ class Procedure(Protocol):
 
     def facts(self, spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
         """What is shown beside the verdicts."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """What a procedure sees in the vehicle itself."""
+
+    label: str
+    """Stands for a case's."""
+    hash: str
+    """Of the model."""
+    frame: pl.DataFrame
+    """One row, a column for each measure, for the criteria."""
+    units: Mapping[str, str]
+    """By column."""
+    by_person: CriterionVerdict
+    """What only a person can say."""
+    drawing: Mapping[str, Any]
+    """Plain data of the 3D page."""
+
+
+@runtime_checkable
+class Looking(Procedure, Protocol):
+    """A procedure that simulates nothing: it has no cases and looks at the vehicle."""
+
+    def look(self, spec: Spec, vehicle: VehicleData, settings: Mapping[str, Any]) -> Look:
+        """What is seen; `settings` are the named parameters of the vehicle that are set otherwise."""
 
 
 def expand(spec: Spec, vehicle: VehicleData, *, kind: str = "time") -> list[Case]:

@@ -1,6 +1,6 @@
 """The report folder: one self-contained page, the verdicts as JSON and JUnit XML, every case and its frame.
 
-    out/index.html  verdicts.json  junit.xml  cases/<hash>.json  cases/<hash>.parquet
+    out/index.html  verdicts.json  junit.xml  cases/<hash>.json  cases/<hash>.parquet  view-<id>.html
 
 The page works without a network: plotly.js, style and data are inside. Each file is written under a temporary
 name and then renamed, so that a reader never meets half a file; `verdicts.json` comes last.
@@ -8,20 +8,22 @@ name and then renamed, so that a reader never meets half a file; `verdicts.json`
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from lmap import files
 from lmap.report import runs, words
 from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import write_parquet
+from lmap.report.scene import file_name, render_scene
+from lmap.report.sheet import plotly_js, script_json
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 
 _PLOTLY = "<script>/* plotly.js */</script>"
@@ -37,11 +39,13 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
     cases = root / "cases"
     cases.mkdir(parents=True, exist_ok=True)
     for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
-        _write(cases / f"{case.hash}.json", case.case_json.encode())
-        _put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
-    _write(root / "index.html", render(acceptance))
-    _write(root / "junit.xml", junit(acceptance).encode())
-    _write(root / "verdicts.json", to_json(acceptance).encode())
+        files.write(cases / f"{case.hash}.json", case.case_json.encode())
+        files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+    for spec, name in _drawings(acceptance):
+        files.write(root / name, render_scene(spec.drawing or {}))
+    files.write(root / "index.html", render(acceptance))
+    files.write(root / "junit.xml", junit(acceptance).encode())
+    files.write(root / "verdicts.json", to_json(acceptance).encode())
 
 
 def render(acceptance: Acceptance) -> bytes:
@@ -64,7 +68,17 @@ def render(acceptance: Acceptance) -> bytes:
     before, place, after = page.partition(_PLOTLY)
     if not place:
         raise ValueError(f"the page's template has no {_PLOTLY}")
-    return b"".join((before.encode(), b"<script>", _plotly_js(), b"</script>", after.encode()))
+    return b"".join((before.encode(), b"<script>", plotly_js(), b"</script>", after.encode()))
+
+
+def _drawings(acceptance: Acceptance) -> list[tuple[SpecVerdict, str]]:
+    """Specs with a drawing, and the file that holds it; two of one id are told apart by their place."""
+    found: dict[str, SpecVerdict] = {}
+    for position, spec in enumerate(acceptance.specs):
+        if spec.drawing is not None:
+            name = file_name(spec.id)
+            found[name if name not in found else file_name(f"{spec.id}-{position}")] = spec
+    return [(spec, name) for name, spec in found.items()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +105,7 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
     title = ", ".join(f"{spec.id} {spec.title}" for spec in acceptance.specs[:3]) or "nothing checked"
     if len(acceptance.specs) > 3:
         title += f" and {len(acceptance.specs) - 3} more"
+    drawings = {id(spec): name for spec, name in _drawings(acceptance)}
     return {
         "title": title,
         "verdict": words.VERDICTS[acceptance.outcome],
@@ -99,13 +114,13 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "version": acceptance.version,
         "core": acceptance.core,
         "specs": [
-            _spec(position, spec, alone=len(acceptance.specs) == 1)
+            _spec(position, spec, alone=len(acceptance.specs) == 1, drawing=drawings.get(id(spec)))
             for position, spec in enumerate(acceptance.specs)
         ],
     }
 
 
-def _spec(position: int, spec: SpecVerdict, *, alone: bool) -> dict[str, Any]:
+def _spec(position: int, spec: SpecVerdict, *, alone: bool, drawing: str | None = None) -> dict[str, Any]:
     return {
         "anchor": f"spec-{position}",
         "id": spec.id,
@@ -122,6 +137,7 @@ def _spec(position: int, spec: SpecVerdict, *, alone: bool) -> dict[str, Any]:
         "messages": words.messages(spec),
         "assumptions": words.assumptions(spec),
         "figures": _figures(position, spec),
+        "drawing": drawing,
         "facts": spec.facts,
         "overrides": [(key, value) for key, value in spec.overrides.items()],
         "inputs": spec.inputs,
@@ -190,7 +206,7 @@ def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
                 "badge_class": _class(figure.badge or ""),
                 "cases": list(dict.fromkeys(view.case for view in figure.views)),
                 "stretches": list(dict.fromkeys(view.stretch for view in figure.views)),
-                "json": _script_json(views),
+                "json": script_json(views),
             }
         )
     return shown
@@ -226,22 +242,6 @@ def _folded(value: Any) -> Any:
     return value
 
 
-def _script_json(value: Any) -> Any:
-    """JSON that may stand in a script element: nothing in it can end the element or open a comment."""
-    from markupsafe import Markup
-
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    for character in "<>&\u2028\u2029":
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    return Markup(text)
-
-
-def _plotly_js() -> bytes:
-    """The library as the plotly package brings it, without importing that package's Python."""
-    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
-    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
-
-
 def _class(verdict: str) -> str:
     """A class of the style sheet: `not-assessed`."""
     return verdict.lower().replace(" ", "-")
@@ -249,17 +249,3 @@ def _class(verdict: str) -> str:
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def _write(path: Path, content: bytes) -> None:
-    _put(path, lambda temporary: temporary.write_bytes(content))
-
-
-def _put(path: Path, write: Callable[[Path], object]) -> None:
-    """All of it or nothing, also when the disk is full or the program is stopped."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        write(temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -4,11 +4,20 @@
 
 from __future__ import annotations
 
+import datetime
 import math
 import re
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from lmap.criteria.chain import Criterion
 
@@ -81,6 +90,11 @@ def _names(value: Any) -> list[str]:
     return names
 
 
+def _friction(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    """A number; or a table (per rail, along the track, with the slip velocity), which is the core's to check."""
+    return value if isinstance(value, dict) else number(value)
+
+
 class RunPart(BaseModel):
     """`[run]`: what procedures expand; the rest is the core's and kept as it is."""
 
@@ -93,7 +107,9 @@ class RunPart(BaseModel):
     wheel_profile: Annotated[
         list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
     ] = None
-    friction: float | None = Field(default=None, ge=0.0, allow_inf_nan=False, strict=True)
+    friction: Annotated[
+        float | None, Field(ge=0.0, allow_inf_nan=False, strict=True), WrapValidator(_friction)
+    ] = None
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:
@@ -115,6 +131,42 @@ class RunPart(BaseModel):
         return kept
 
 
+_HASH = re.compile(r"[0-9a-f]{64}")
+
+
+def _iso_date(value: Any) -> str:
+    try:
+        if not isinstance(value, str) or len(value) != 10:
+            raise ValueError
+        datetime.date.fromisoformat(value)
+    except ValueError:
+        raise ValueError('a day as "2026-01-31", in quotes') from None
+    return value
+
+
+def _a_hash(value: Any) -> str:
+    if not isinstance(value, str) or _HASH.fullmatch(value) is None:
+        raise ValueError("the model's hash, 64 hexadecimal digits: a check without sign-off prints it")
+    return value
+
+
+def _a_person(value: Any) -> str:
+    if not isinstance(value, str) or not value.strip() or value.strip() == "YOUR NAME":
+        raise ValueError("the name of the person who looked, in quotes")
+    return value.strip()
+
+
+class SignOff(BaseModel):
+    """`[sign_off]`: a person has looked at what no criterion can say, of this very model."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    name: Annotated[str, BeforeValidator(_a_person)]
+    date: Annotated[str, BeforeValidator(_iso_date)]
+    model: Annotated[str, BeforeValidator(_a_hash)]
+    """`lmap.view.model_hash` of the vehicle in the spec's condition; of another model it is void."""
+
+
 class Spec(BaseModel):
     """One spec file."""
 
@@ -129,12 +181,15 @@ class Spec(BaseModel):
     run: RunPart = Field(default_factory=RunPart)
     set: dict[str, Any] = Field(default_factory=dict)
     """Named parameters of the vehicle and keys of the spec; see `overrides`."""
+    sign_off: SignOff | None = None
+    """For procedures that wait for a person."""
     criterion: list[Criterion] = Field(min_length=1)
 
 
 KNOWN_KEYS: dict[tuple[str | int, ...], list[str]] = {
     (): list(Spec.model_fields),
     ("run",): list(RunPart.model_fields),
+    ("sign_off",): list(SignOff.model_fields),
     ("criterion", 0): list(Criterion.model_fields),
 }
 """Keys allowed in each table, for the nearest known one."""

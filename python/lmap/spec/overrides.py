@@ -62,6 +62,11 @@ def checked(settings: Any) -> dict[str, Any]:
         found = f"{type(settings).__name__}"
         raise InputProblem(Problem(key=("set",), found=found, allowed="a mapping of keys to values"))
     found_: dict[str, Any] = toml.plain(settings, "settings", ("set",))
+    for key in found_:
+        other = _other_speed(key)
+        if other and other > key and other in found_:
+            allowed = f"one way of writing it: {key} or {other}"
+            raise InputProblem(Problem(key=("set", key), found=f'"{key}" and "{other}"', allowed=allowed))
     return found_
 
 

@@ -27,7 +27,7 @@ use crate::math::eigen::Eigen;
 use crate::run::{Control, Ended, Outcome};
 use crate::schema::Case;
 
-/// Eigenvalues smaller than this (rad/s) are of rigid motion: half a micrometre per second and metre.
+/// Eigenvalues smaller than this (rad/s) are of rigid motion: a period of an hour and more.
 pub const RIGID: f64 = 1e-3;
 
 /// One mode.

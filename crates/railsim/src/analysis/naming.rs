@@ -46,11 +46,17 @@ impl Group {
         sum
     }
 
+    /// Energy in the lateral plane (y, phi, psi) and in the vertical one (x, z, theta).
+    fn planes(&self) -> [f64; 2] {
+        let e = self.by_direction();
+        [e[1] + e[3] + e[5], e[0] + e[2] + e[4]]
+    }
+
     /// Lateral and vertical plane apart, then the strongest direction in the stronger plane.
     fn direction(&self) -> usize {
         let e = self.by_direction();
-        let lateral = e[1] + e[3] + e[5] > e[0] + e[2] + e[4];
-        let plane = if lateral { [1, 3, 5] } else { [0, 2, 4] };
+        let [lateral, vertical] = self.planes();
+        let plane = if lateral > vertical { [1, 3, 5] } else { [0, 2, 4] };
         plane.into_iter().max_by(|a, b| e[*a].total_cmp(&e[*b])).unwrap_or(0)
     }
 }
@@ -66,7 +72,10 @@ pub(super) fn name(model: &Model, speed: f64, eigenvalue: Complex<f64>, shape: &
         return if d == 0 { "free rolling".into() } else { format!("free {}", WORDS[d]) };
     }
     let running = bogies.total() + axles.total();
-    if speed > 0.0 && running > track.total() && follows(model, speed, shape) {
+    // Sideways: in a motion along the track the lateral parts are rounding, which may follow anything.
+    let planes = [&car, &bogies, &axles].map(Group::planes);
+    let sideways = planes.iter().map(|p| p[0]).sum::<f64>() > planes.iter().map(|p| p[1]).sum();
+    if speed > 0.0 && sideways && running > track.total() && follows(model, speed, shape) {
         let group =
             if bogies.members.is_empty() || axles.total() > 3.0 * bogies.total() { &axles } else { &bogies };
         let e = group.by_direction();
@@ -191,7 +200,10 @@ fn describe(group: &Group, direction: usize, word: &str) -> String {
     let total = |m: &Member| m.energy.iter().sum::<f64>();
     let most = group.members.iter().map(total).fold(0.0, f64::max);
     let noted: Vec<&Member> = group.members.iter().filter(|m| total(m) >= NOTED * most).collect();
-    let single = group.what.trim_end_matches('s');
+    let single = match group.what {
+        "bodies" => "body",
+        what => what.trim_end_matches('s'),
+    };
     match noted[..] {
         [only] if group.what == "track" => format!("track {word} {}", only.name),
         [only] => format!("{} {word}", only.name),

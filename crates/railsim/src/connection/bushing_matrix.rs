@@ -25,10 +25,10 @@ use crate::math::{Mat3, Vec3};
 pub struct BushingMatrix {
     /// Rows of the symmetric stiffness: forces x, y, z (N) and moments x, y, z (N m) per displacement x, y, z (m) and
     /// rotation x, y, z (rad).
-    pub stiffness: [[f64; 6]; 6],
+    pub stiffness: Box<[[f64; 6]; 6]>,
     /// Rows of the symmetric damping, in the same order, per m/s and rad/s; none if left out.
     #[serde(default)]
-    pub damping: [[f64; 6]; 6],
+    pub damping: Box<[[f64; 6]; 6]>,
 }
 
 /// Stretch of a coupled element in either body's axes, and rates.
@@ -114,15 +114,16 @@ impl BushingMatrix {
         damping[3][3] = 1e3;
         damping[1][3] = 5e2;
         damping[3][1] = 5e2;
-        vec![Self { stiffness, damping }]
+        vec![Self { stiffness: Box::new(stiffness), damping: Box::new(damping) }]
     }
 
     /// The one on the other side: what couples a lateral with a vertical direction changes its sign.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         const SIDE: [f64; 6] = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
-        let mirror =
-            |m: &[[f64; 6]; 6]| std::array::from_fn(|i| std::array::from_fn(|j| SIDE[i] * m[i][j] * SIDE[j]));
+        let mirror = |m: &[[f64; 6]; 6]| {
+            Box::new(std::array::from_fn(|i| std::array::from_fn(|j| SIDE[i] * m[i][j] * SIDE[j])))
+        };
         Self { stiffness: mirror(&self.stiffness), damping: mirror(&self.damping) }
     }
 }

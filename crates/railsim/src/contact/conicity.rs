@@ -6,7 +6,8 @@
 //! cancels: tan(gamma_e) = pi^2/(8 I^2), I = int_0^A dy/sqrt(2 (S(A) - S(y))). Both sides being mirror images, dr is odd and the motion
 //! symmetrical, +-A.
 //!
-//! On the reference pairs of UIC 519/EN 15302 (wheels A, B, H, I on rail A, gauge 1435.16 mm, r0 460 mm, 3 mm) this gives 0.177, 0.077, 0.274, 0.512, and
+//! [`RadiusCurve`] is of rigid contact by direct search and any two wheels; the methods of [`GeometryTable`] are of elastic contact and a rolling axle:
+//! on the reference pairs of UIC 519/EN 15302 (wheels A, B, H, I on rail A, gauge 1435.16 mm, r0 460 mm, 3 mm) this gives 0.177, 0.077, 0.274, 0.512, and
 //! 0.171, 0.060, 0.255, 0.503 if the roll of the wheelset is left out, against 0.188, 0.058, 0.245, 0.489 in the standard; its tolerance for calculations is
 //! the smaller of 0.05 and half the value.
 
@@ -100,6 +101,199 @@ pub fn equivalent_conicity(dr: impl Fn(f64) -> Option<f64>, amplitude: f64) -> O
         integral += dy / (2.0 * left).sqrt();
     }
     Some(PI * PI / (8.0 * integral * integral))
+}
+
+/// How an equivalent conicity is taken from a rolling radius difference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Wavelength of the kinematic motion by integrating twice (EN 15302, annex B): the reference.
+    Integration,
+    /// Half the slope of the least-squares line through dr over the amplitude either side of where that line is zero (annex C), in two
+    /// steps: a first line finds the centre, a second, about it, the slope.
+    Regression,
+    /// Half the first harmonic of dr(y0 + A sin) over A (quasi-linearisation).
+    Harmonic,
+}
+
+impl Method {
+    /// By name: `integration`, `regression`, `harmonic`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "integration" => Some(Self::Integration),
+            "regression" => Some(Self::Regression),
+            "harmonic" => Some(Self::Harmonic),
+            _ => None,
+        }
+    }
+}
+
+/// A rolling radius difference dr(y) = r_right - r_left by points, straight between them. Need not be odd: the wheels may differ in
+/// profile and diameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadiusCurve {
+    y: Vec<f64>,
+    dr: Vec<f64>,
+    /// int dr dy from the first point
+    s: Vec<f64>,
+}
+
+impl RadiusCurve {
+    /// From points [y, dr] (m), by rising y; points that are not finite or do not rise are left out.
+    #[must_use]
+    pub fn new(points: &[[f64; 2]]) -> Self {
+        let mut out = Self { y: Vec::new(), dr: Vec::new(), s: Vec::new() };
+        for &[y, dr] in points {
+            if !(y.is_finite() && dr.is_finite()) || out.y.last().is_some_and(|&last| y <= last) {
+                continue;
+            }
+            let s = match (out.y.last(), out.dr.last(), out.s.last()) {
+                (Some(y0), Some(d0), Some(s0)) => s0 + 0.5 * (dr + d0) * (y - y0),
+                _ => 0.0,
+            };
+            out.y.push(y);
+            out.dr.push(dr);
+            out.s.push(s);
+        }
+        out
+    }
+
+    /// Lateral positions, m.
+    #[must_use]
+    pub fn y(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Rolling radius differences there, m.
+    #[must_use]
+    pub fn dr(&self) -> &[f64] {
+        &self.dr
+    }
+
+    fn piece(&self, y: f64) -> Option<(usize, f64)> {
+        let (first, last) = (*self.y.first()?, *self.y.last()?);
+        if !(y >= first && y <= last) || self.y.len() < 2 {
+            return None;
+        }
+        let i = self.y.partition_point(|&v| v <= y).clamp(1, self.y.len() - 1) - 1;
+        Some((i, y - self.y[i]))
+    }
+
+    /// dr at y, m; `None` outside.
+    #[must_use]
+    pub fn at(&self, y: f64) -> Option<f64> {
+        let (i, h) = self.piece(y)?;
+        Some(self.dr[i] + h * (self.dr[i + 1] - self.dr[i]) / (self.y[i + 1] - self.y[i]))
+    }
+
+    /// int dr dy from the first point to y, m2.
+    fn integral(&self, y: f64) -> Option<f64> {
+        let (i, h) = self.piece(y)?;
+        Some(self.s[i] + 0.5 * h * (self.dr[i] + self.at(y)?))
+    }
+
+    /// Where the wheelset runs centred: the zero of dr with a rising slope that is nearest to y = 0.
+    #[must_use]
+    pub fn centre(&self) -> Option<f64> {
+        let mut best: Option<f64> = None;
+        for i in 0..self.y.len().saturating_sub(1) {
+            let (a, b) = (self.dr[i], self.dr[i + 1]);
+            if a <= 0.0 && b > 0.0 {
+                let y = self.y[i] - a * (self.y[i + 1] - self.y[i]) / (b - a);
+                if best.is_none_or(|other| y.abs() < other.abs()) {
+                    best = Some(y);
+                }
+            }
+        }
+        best
+    }
+
+    /// Equivalent conicity tan(gamma_e) at an amplitude (m, half the peak-to-peak lateral motion).
+    ///
+    /// `None` where there is no oscillation of this amplitude: dr does not restore, or the curve ends.
+    #[must_use]
+    pub fn conicity(&self, amplitude: f64, method: Method) -> Option<f64> {
+        if amplitude.is_nan() || amplitude <= 0.0 {
+            return None;
+        }
+        let conicity = match method {
+            Method::Integration => self.by_integration(amplitude),
+            Method::Regression => self.by_regression(amplitude),
+            Method::Harmonic => self.by_harmonic(amplitude),
+        };
+        conicity.filter(|c| c.is_finite() && *c > 0.0)
+    }
+
+    /// The turning points of the motion of an amplitude: equal integrals of dr, 2 A apart.
+    #[must_use]
+    pub fn turning_points(&self, amplitude: f64) -> Option<[f64; 2]> {
+        let centre = self.centre()?;
+        // S(left) - S(left + 2 A) falls from positive (left end far out) to negative as the interval moves to the right
+        let excess = |left: f64| Some(self.integral(left)? - self.integral(left + 2.0 * amplitude)?);
+        let (mut low, mut high) = (centre - 2.0 * amplitude, centre);
+        low = low.max(*self.y.first()?);
+        high = high.min(self.y.last()? - 2.0 * amplitude);
+        if low >= high || excess(low)? < 0.0 || excess(high)? > 0.0 {
+            return None;
+        }
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if excess(middle)? > 0.0 { low = middle } else { high = middle }
+        }
+        Some([low, low + 2.0 * amplitude])
+    }
+
+    fn by_integration(&self, amplitude: f64) -> Option<f64> {
+        const STEPS: usize = 800;
+        let [left, right] = self.turning_points(amplitude)?;
+        let (middle, top) = (0.5 * (left + right), self.integral(right)?);
+        let mut integral = 0.0;
+        for k in 0..STEPS {
+            // y = middle + A sin(theta) takes the singularities at the turning points away
+            let theta = std::f64::consts::PI * ((k as f64 + 0.5) / STEPS as f64 - 0.5);
+            let rest = top - self.integral(middle + amplitude * theta.sin())?;
+            if rest <= 0.0 {
+                return None;
+            }
+            integral += amplitude * theta.cos() * PI / STEPS as f64 / (2.0 * rest).sqrt();
+        }
+        Some(PI * PI / (2.0 * integral * integral))
+    }
+
+    /// Slope of the least-squares line over `centre` +- `amplitude`, and where that line is zero; every piece's integrals exact.
+    fn line(&self, centre: f64, amplitude: f64) -> Option<[f64; 2]> {
+        let (left, right) = (centre - amplitude, centre + amplitude);
+        let mut knots = vec![left];
+        knots.extend(self.y.iter().copied().filter(|y| *y > left && *y < right));
+        knots.push(right);
+        let (mut mean, mut moment) = (0.0, 0.0);
+        for pair in knots.windows(2) {
+            let (h, m) = (pair[1] - pair[0], 0.5 * (pair[0] + pair[1]));
+            let (a, b, c) = (self.at(pair[0])?, self.at(m)?, self.at(pair[1])?);
+            mean += h * (a + 4.0 * b + c) / 6.0;
+            let u = [pair[0] - centre, m - centre, pair[1] - centre];
+            moment += h * (a * u[0] + 4.0 * b * u[1] + c * u[2]) / 6.0;
+        }
+        mean /= 2.0 * amplitude;
+        let slope = moment / (2.0 / 3.0 * amplitude.powi(3));
+        Some([slope, centre - mean / slope])
+    }
+
+    fn by_regression(&self, amplitude: f64) -> Option<f64> {
+        let [_, centre] = self.line(self.centre()?, amplitude)?;
+        Some(0.5 * self.line(centre, amplitude)?[0])
+    }
+
+    fn by_harmonic(&self, amplitude: f64) -> Option<f64> {
+        const STEPS: usize = 800;
+        let centre = self.centre()?;
+        let mut sum = 0.0;
+        for k in 0..STEPS {
+            let sin = (2.0 * PI * (k as f64 + 0.5) / STEPS as f64).sin();
+            sum += self.at(centre + amplitude * sin)? * sin;
+        }
+        Some(sum / (STEPS as f64 * amplitude))
+    }
 }
 
 #[cfg(test)]

@@ -10,9 +10,13 @@
 pub mod conicity;
 pub mod creep;
 pub mod creepage;
+pub mod friction;
 pub mod geometry_table;
 pub mod hertz;
 pub mod kalker_table;
+pub mod non_elliptic;
 pub mod normal;
+pub mod pair;
 pub mod profile;
+pub mod search;
 pub mod textbook;

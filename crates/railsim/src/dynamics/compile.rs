@@ -3,8 +3,10 @@
 
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Mount};
+use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::{GeometryTable, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
+use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
@@ -77,6 +79,20 @@ fn guided(vehicle: &Vehicle) -> Vec<usize> {
 /// # Errors
 /// Faults in the profiles.
 pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
+    let (wheel, rail, placement) = contact_pair(case)?;
+    GeometryTable::build(&wheel, &rail, &placement)
+}
+
+/// The same pair for direct search ([`Side`]).
+///
+/// # Errors
+/// As [`geometry_table`].
+pub fn side(case: &Case) -> Result<Side> {
+    let (wheel, rail, placement) = contact_pair(case)?;
+    Side::new(&wheel, &rail, &placement)
+}
+
+fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
     let radius = case.vehicle.wheelsets.first();
     let Some(set) = radius else {
         return Err(Error::input(Fault::new(
@@ -108,7 +124,7 @@ pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
         youngs_modulus: case.vehicle.contact.youngs_modulus,
         poisson: case.vehicle.contact.poisson,
     };
-    GeometryTable::build(&wheel, &rail, &placement)
+    Ok((wheel, rail, placement))
 }
 
 fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
@@ -124,15 +140,14 @@ fn contact(case: &Case) -> Result<Contact> {
         return Ok(Contact::Textbook(*book));
     }
     let settings = &case.vehicle.contact;
-    let mass: f64 = case.vehicle.bodies.iter().map(|b| b.mass).sum::<f64>()
-        + case.vehicle.wheelsets.iter().map(|w| w.mass).sum::<f64>();
+    let mass = case.vehicle.mass();
     let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
     Ok(Contact::Profiles {
         table: Box::new(geometry_table(case)?),
-        law: case.run.creep,
+        law: case.run.creep.with_poisson(settings.poisson),
         shear_modulus: settings.youngs_modulus / (2.0 * (1.0 + settings.poisson)),
         dissipation: if wheel_load > 0.0 { settings.damping / wheel_load } else { 0.0 },
-        friction: case.run.friction,
+        friction: FrictionField::new(&case.run.friction),
     })
 }
 

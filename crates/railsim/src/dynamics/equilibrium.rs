@@ -10,7 +10,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::body::{coordinate, steady_speeds};
-use crate::contact::geometry_table::ContactPoint;
+use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::dynamics::model::{Contact, Model};
 use crate::dynamics::rhs::{SpeedProgram, VehicleSystem};
 use crate::error::{Error, Result};
@@ -226,7 +226,7 @@ pub fn design_state(model: &Model, s: f64) -> Vec<f64> {
 /// Depth at which a centred wheel carries about `load`, by bisection.
 fn touching_depth(table: &crate::contact::geometry_table::GeometryTable, load: f64) -> f64 {
     let carried = |depth: f64| {
-        let mut out = [ContactPoint::default(); 2];
+        let mut out = [ContactPoint::default(); MAX_CONTACTS];
         let n = table.contacts(0.0, 0.0, depth, 0.0, &mut out).unwrap_or(0);
         out[..n].iter().map(|c| c.share * c.hertz * (c.penetration * c.angle.cos()).powf(1.5)).sum::<f64>()
     };

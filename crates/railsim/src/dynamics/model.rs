@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Law, Mount, Relative, Wrench};
 use crate::contact::creep::CreepLaw;
+use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
@@ -149,7 +150,7 @@ pub enum Contact {
         /// Hunt-Crossley dissipation factor, s/m.
         dissipation: f64,
         /// Coefficient of friction.
-        friction: f64,
+        friction: FrictionField,
     },
     /// Constant coefficients, for closed forms.
     Textbook(Textbook),
@@ -251,10 +252,10 @@ impl Model {
         self.bodies.len() + self.wheelsets.len()
     }
 
-    /// Mass of everything, kg.
+    /// Mass of everything but guided bodies, kg: what the wheels carry.
     #[must_use]
     pub fn mass(&self) -> f64 {
-        (0..self.count()).map(|i| self.rigid(i).mass).sum()
+        (0..self.count()).filter(|i| !self.guided.contains(i)).map(|i| self.rigid(i).mass).sum()
     }
 
     /// Whether nothing fixes the vehicle's place along the track: neither a speed hold nor a guided body.

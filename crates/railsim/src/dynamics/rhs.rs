@@ -5,7 +5,7 @@ use crate::connection::lanes::BushingBlock;
 use crate::connection::{Law, Pair, Pose, Relative};
 use crate::contact::creep::{CreepCase, Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
-use crate::contact::geometry_table::ContactPoint;
+use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::contact::normal::hunt_crossley;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::model::{Contact, Link, Model};
@@ -14,6 +14,7 @@ use crate::dynamics::state::StateMap;
 use crate::dynamics::stiff;
 use crate::integrator::{StiffBlock, System};
 use crate::math::Vec3;
+use crate::math::cube_root::cube_root;
 use crate::track::Deviation;
 
 /// Below this rolling speed (m/s) creepages are formed with it instead, so that standstill stays finite.
@@ -334,7 +335,7 @@ impl Axle<'_> {
                 let rail = rail_pose(sigma, rail_y, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
                 wheel.lift(pose.shift);
-                let mut found = [ContactPoint::default(); 2];
+                let mut found = [ContactPoint::default(); MAX_CONTACTS];
                 let count = table
                     .contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found)
                     .map_err(|_| pose)?;
@@ -348,12 +349,13 @@ impl Axle<'_> {
                     contact.normal = point.share * n.force;
                     contact.normal_slope = [point.share * n.stiffness, point.share * n.damping];
                     contact.creep = [0.0; 2];
-                    contact.creeps = self.creeping && contact.normal > 0.0 && *friction > 0.0;
+                    let mu = friction.at(usize::from(sigma > 0.0), q[0], placed.slip);
+                    contact.creeps = self.creeping && contact.normal > 0.0 && mu > 0.0;
                     if contact.creeps {
                         cases.push(CreepCase {
                             patch: patch(point, contact.normal, *shear_modulus),
                             creepage: placed.creepage,
-                            mu: *friction,
+                            mu,
                         });
                     }
                     contact.placed = placed;
@@ -407,9 +409,9 @@ impl Axle<'_> {
 }
 
 /// The patch of a contact of the geometry table under load.
-#[inline]
+#[inline(always)]
 pub(crate) fn patch(point: &ContactPoint, normal: f64, shear_modulus: f64) -> Patch {
-    let root = normal.cbrt();
+    let root = cube_root(normal);
     Patch {
         a: point.a1 * root,
         b: point.b1 * root,
@@ -422,7 +424,7 @@ pub(crate) fn patch(point: &ContactPoint, normal: f64, shear_modulus: f64) -> Pa
 }
 
 /// Force of one contact on the wheel, track axes, N.
-#[inline]
+#[inline(always)]
 pub(crate) fn total_force(c: &ContactForce) -> Vec3 {
     c.normal * c.placed.e_n + c.creep[1] * c.placed.e_t + Vec3::new(c.creep[0], 0.0, 0.0)
 }

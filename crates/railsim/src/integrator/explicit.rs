@@ -1,6 +1,6 @@
 //! Explicit Runge-Kutta schemes from their Butcher tableau.
 
-use super::{Statistics, StepEnd, System};
+use super::{Statistics, StepEnd, System, first_slope};
 
 /// Butcher tableau: stage times c, lower triangle a (row by row, without the first, empty row), weights b.
 #[derive(Debug)]
@@ -32,10 +32,11 @@ impl Explicit {
         t: f64,
         x: &mut [f64],
         h: f64,
+        slope: Option<&[f64]>,
         statistics: &mut Statistics,
     ) -> StepEnd {
         let Tableau { c, a, b } = self.tableau;
-        system.rhs(t, x, &mut self.slopes[0]);
+        first_slope(system, t, x, slope, &mut self.slopes[0], statistics);
         for (stage, row) in a.iter().enumerate() {
             let (known, rest) = self.slopes.split_at_mut(stage + 1);
             self.argument.copy_from_slice(x);
@@ -48,7 +49,7 @@ impl Explicit {
             add(x, h * weight, k);
         }
         statistics.steps += 1;
-        statistics.rhs_evaluations += c.len() as u64;
+        statistics.rhs_evaluations += c.len() as u64 - 1;
         StepEnd::Done
     }
 }

@@ -174,6 +174,24 @@ pub struct Statistics {
     pub factorisations: u64,
 }
 
+/// Writes the slope at (t, x) into `k`: the known one, else by a call of the right-hand side.
+fn first_slope<S: System>(
+    system: &mut S,
+    t: f64,
+    x: &[f64],
+    known: Option<&[f64]>,
+    k: &mut [f64],
+    statistics: &mut Statistics,
+) {
+    match known {
+        Some(slope) => k.copy_from_slice(slope),
+        None => {
+            system.rhs(t, x, k);
+            statistics.rhs_evaluations += 1;
+        }
+    }
+}
+
 /// A scheme with its working memory: the state is the caller's, nothing here outlives a step but the counts.
 #[derive(Debug, Clone)]
 pub struct Stepper {
@@ -201,9 +219,22 @@ impl Stepper {
 
     /// Takes `x` from t to t + h. Allocates nothing.
     pub fn step<S: System>(&mut self, system: &mut S, t: f64, x: &mut [f64], h: f64) -> StepEnd {
+        self.step_from(system, t, x, h, None)
+    }
+
+    /// The same where the slope at (t, x) is known already, from the *last* call of [`System::rhs`]: an output step
+    /// evaluates it for its row.
+    pub fn step_from<S: System>(
+        &mut self,
+        system: &mut S,
+        t: f64,
+        x: &mut [f64],
+        h: f64,
+        slope: Option<&[f64]>,
+    ) -> StepEnd {
         match &mut self.scheme {
-            Scheme::Explicit(scheme) => scheme.step(system, t, x, h, &mut self.statistics),
-            Scheme::Ros2(scheme) => scheme.step(system, t, x, h, &mut self.statistics),
+            Scheme::Explicit(scheme) => scheme.step(system, t, x, h, slope, &mut self.statistics),
+            Scheme::Ros2(scheme) => scheme.step(system, t, x, h, slope, &mut self.statistics),
         }
     }
 

@@ -16,7 +16,7 @@
 //! (I + g h C + g^2 h^2 K) k_v = r_v - g h K r_p,      k_p = r_p + g h k_v
 //! ```
 
-use super::{Statistics, StepEnd, StiffBlock, System};
+use super::{Statistics, StepEnd, StiffBlock, System, first_slope};
 use crate::math::small_lu::SmallLu;
 
 /// g = 1 - 1/sqrt(2) = 0.2929.
@@ -73,12 +73,12 @@ impl Ros2 {
         t: f64,
         x: &mut [f64],
         h: f64,
+        slope: Option<&[f64]>,
         statistics: &mut Statistics,
     ) -> StepEnd {
         let Self { blocks, k1, k2, argument } = self;
         let gh = GAMMA * h;
-        system.rhs(t, x, k1);
-        statistics.rhs_evaluations += 1;
+        first_slope(system, t, x, slope, k1, statistics);
         for (index, block) in blocks.iter_mut().enumerate() {
             system.stiff_matrices(index, &mut block.stiffness, &mut block.damping);
             statistics.factorisations += 1;

@@ -76,9 +76,9 @@ impl Table {
     #[must_use]
     pub fn integral(&self, x: f64) -> f64 {
         if self.is_odd() {
-            return self.from_start(x.abs());
+            return self.area_to(x.abs());
         }
-        self.from_start(x) - self.from_start(0.0)
+        self.area_to(x) - self.area_to(0.0)
     }
 
     /// The x at which f is `f`; none where the table does not reach it or stays level.
@@ -157,7 +157,7 @@ impl Table {
     }
 
     /// Integral from the first point to `x`.
-    fn from_start(&self, x: f64) -> f64 {
+    fn area_to(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
         let straight = |i: usize, x: f64| {
             let d = x - self.x[i];

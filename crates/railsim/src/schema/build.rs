@@ -7,7 +7,7 @@ use super::node::{Node, quoted};
 use super::vehicle::{Body, Connection, Sensor, Shape, Vehicle, Wheelset};
 use super::written::{WrittenConnection, WrittenVehicle};
 use crate::connection::ForceLaw;
-use crate::error::{Fault, KeyPath};
+use crate::error::{Fault, KeyPath, Segment};
 
 /// Turns what was written into a [`Vehicle`].
 pub(super) struct Builder<'a> {
@@ -153,9 +153,14 @@ impl<'a> Builder<'a> {
     fn connection(&mut self, c: WrittenConnection, node: &Node) -> Vec<Connection> {
         self.name(&c.name, &node.at);
         for fault in c.law.faults(&KeyPath::default()) {
-            // The law knows its own keys only; the tree knows where their numbers were written.
+            // The law knows its own keys only; the tree knows where their numbers were written, and how.
             let place = node.deepest(&fault.key.0);
-            self.faults.push(Fault { key: place.at.clone(), found: place.found(), ..fault });
+            let is_number = place.number().is_some() && fault.found.parse::<f64>().is_ok();
+            let found = if is_number { place.found() } else { fault.found.clone() };
+            let missing = matches!(&fault.key.0[..], [Segment::Key(key)] if node.get(key).is_none());
+            let key =
+                if missing { KeyPath([&node.at.0[..], &fault.key.0].concat()) } else { place.at.clone() };
+            self.faults.push(Fault { key, found, ..fault });
         }
         let points = match (c.position, c.positions) {
             (Some(point), None) => [point, point],

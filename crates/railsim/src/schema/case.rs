@@ -15,6 +15,7 @@ use super::run_check;
 use super::track::Track;
 use super::vehicle::Vehicle;
 use crate::contact::creep::CreepLaw;
+use crate::contact::friction::Friction;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::Integrator;
 use crate::track::irregularity::{DeviationField, Irregularity};
@@ -201,6 +202,7 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
     }
     leaf(at("run", "integrator"), Integrator::faults, faults);
     leaf(at("run", "creep"), CreepLaw::faults, faults);
+    leaf(at("run", "friction"), Friction::faults, faults);
     for node in at("track", "irregularity").into_iter().flat_map(Node::items) {
         leaf(Some(node), Irregularity::faults, faults);
     }

@@ -213,9 +213,14 @@ fn allow_references(schema: &mut Json) {
             map.values_mut().for_each(allow_references);
             let kind = map.get("type").and_then(Json::as_str);
             if matches!(kind, Some("number" | "integer")) {
-                let number = std::mem::take(map);
+                let mut number = std::mem::take(map);
+                // What a person reads stays outside, where editors look for it.
+                *map = ["description", "default"]
+                    .into_iter()
+                    .filter_map(|key| Some((key.to_owned(), number.remove(key)?)))
+                    .collect();
                 let reference = json!({ "type": "string", "pattern": r"^-?\$" });
-                *map = Map::from_iter([("anyOf".to_owned(), json!([Json::Object(number), reference]))]);
+                map.insert("anyOf".to_owned(), json!([Json::Object(number), reference]));
             }
         }
         Json::Array(items) => items.iter_mut().for_each(allow_references),

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::contact::creep::CreepLaw;
+use crate::contact::friction::Friction;
 use crate::contact::textbook::Textbook;
 use crate::integrator::Integrator;
 
@@ -51,9 +52,8 @@ pub struct Run {
     /// Speed, m/s; 0 stands. Of a ramp-down or bifurcation the speed at which it begins.
     #[schemars(extend("minimum" = 0, "unit" = "m/s"))]
     pub speed: f64,
-    /// Coefficient of friction between wheel and rail.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1.5))]
-    pub friction: f64,
+    /// Coefficient of friction between wheel and rail: a number, or a table per rail, along the track, falling with the slip velocity.
+    pub friction: Friction,
     /// Name of the wheel profile in `profiles`; the vehicle's own if absent. After reading always a name.
     #[serde(default)]
     pub wheel_profile: String,

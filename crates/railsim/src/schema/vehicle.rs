@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
@@ -174,6 +174,20 @@ pub struct Outline {
     pub section: Vec<[f64; 2]>,
 }
 
+fn size(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({
+        "type": "array", "minItems": 3, "maxItems": 3,
+        "items": { "type": "number", "exclusiveMinimum": 0, "unit": "m" },
+    })
+}
+
+fn size_or_none(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({
+        "type": "array", "minItems": 3, "maxItems": 3,
+        "items": { "type": "number", "minimum": 0, "unit": "m" },
+    })
+}
+
 /// A piece of equipment: its mass is part of its body's.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -190,7 +204,7 @@ pub struct Equipment {
     pub position: [f64; 3],
     /// Length, width, height, m.
     #[serde(default)]
-    #[schemars(extend("minimum" = 0, "unit" = "m"))]
+    #[schemars(schema_with = "size_or_none")]
     pub size: [f64; 3],
 }
 
@@ -205,7 +219,7 @@ pub enum Shape {
         /// Centre in vehicle axes, m.
         position: [f64; 3],
         /// Length, width, height, m.
-        #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+        #[schemars(schema_with = "size")]
         size: [f64; 3],
     },
     /// A round bar or tank.
@@ -317,10 +331,15 @@ pub struct DynamicBrake {
 }
 
 impl Vehicle {
-    /// Mass of all bodies, kg.
+    /// Mass of all bodies but guided ones, kg.
     #[must_use]
     pub fn mass(&self) -> f64 {
-        self.bodies.iter().map(|b| b.mass).chain(self.wheelsets.iter().map(|w| w.mass)).sum()
+        self.bodies
+            .iter()
+            .filter(|b| !b.guided)
+            .map(|b| b.mass)
+            .chain(self.wheelsets.iter().map(|w| w.mass))
+            .sum()
     }
 
     /// The vehicle of a document (JSON as [`super::toml_to_json`] gives it) in one condition; without one, in its design

@@ -25,7 +25,7 @@
       return copy;
     });
     var layout = {
-      height: view.layout.rows > 1 ? Math.max(HEIGHT, ROW * view.layout.rows + 60) : (narrow ? 290 : HEIGHT),
+      height: view.layout.height ? (narrow ? Math.min(view.layout.height, 400) : view.layout.height) : view.layout.rows > 1 ? Math.max(HEIGHT, ROW * view.layout.rows + 60) : (narrow ? 290 : HEIGHT),
       width: width,
       margin: { l: narrow ? 52 : 64, r: 10, t: 8, b: 44 },
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",

@@ -26,6 +26,13 @@ impl KalkerLinear {
         }
     }
 
+    /// Spin moment on the wheel, N m: Mz = -G c^3 (-C23 eta + c C33 phi), c = sqrt(a b) (the same source; C33 by Kalker 1967).
+    #[must_use]
+    pub fn spin_moment(&self, p: &Patch, c33: f64, creepage: &Creepage) -> f64 {
+        let c = (p.a * p.b).sqrt();
+        -p.shear_modulus * c * c * c * (-p.c23 * creepage.eta + c * c33 * creepage.phi)
+    }
+
     /// Laws for the contract suite.
     #[must_use]
     pub fn examples() -> Vec<Self> {

@@ -2,7 +2,7 @@
 
 use super::{
     BLEND_FROM, BLEND_TO, Gaps, GeometryTable, LEAST_CURVATURE, NO_RAIL, PENETRATION, Placement, ROLL_RANGE,
-    ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values,
+    ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values, YAW_FULL, YAW_TRAVEL,
 };
 use crate::contact::profile::{Profile, ProfileKind, SPACING};
 use crate::contact::{hertz, kalker_table};
@@ -47,23 +47,29 @@ impl GeometryTable {
     /// - profiles of the wrong kind,
     /// - a rail that does not reach down to the gauge point on its gauge side,
     /// - gauge, radius, distances or elastic constants that are not positive, Poisson's ratio outside 0..0.5, an
-    ///   inclination steeper than 1:5.
+    ///   inclination steeper than 1:5,
+    /// - a gauge too narrow for the flanges, or so wide that the wheelset falls in.
     pub fn build(wheel: &Profile, rail: &Profile, placement: &Placement) -> Result<Self> {
+        Self::build_at(wheel, rail, placement, PENETRATION)
+    }
+
+    /// The same with another normal interpenetration for the quasi-elastic averages, m (1 to 200 um): [`VIRTUAL`](crate::contact::search::VIRTUAL)
+    /// times the approach under the wheel load that matters. [`PENETRATION`] is that of some 40 kN.
+    ///
+    /// # Errors
+    /// As [`GeometryTable::build`]; an interpenetration outside its range.
+    pub fn build_at(
+        wheel: &Profile,
+        rail: &Profile,
+        placement: &Placement,
+        penetration: f64,
+    ) -> Result<Self> {
         check(wheel, rail, placement)?;
-        let at = KeyPath::of("track.rail_profile");
-        let mut rail = rail.inclined(placement.rail_inclination, &at)?;
-        rail.top_to_zero();
-        let gauge_point = gauge_point(&rail, placement.gauge_point_depth).ok_or_else(|| {
-            Error::input(
-                Fault::new(
-                    KeyPath::of("track.gauge_point_depth"),
-                    format!("{:.1} mm", 1e3 * placement.gauge_point_depth),
-                    "a depth that the gauge side of the rail profile reaches",
-                )
-                .hint("the gauge side has negative y"),
-            )
-        })?;
-        let rail_origin_y = 0.5 * placement.gauge - gauge_point;
+        if !(1e-6..=200e-6).contains(&penetration) {
+            let found = format!("{} um", 1e6 * penetration);
+            return Err(Error::input(Fault::new(KeyPath::of("penetration"), found, "1 to 200 um")));
+        }
+        let (rail, rail_origin_y) = place_rail(rail, placement)?;
         let mut table = Self {
             placement: *placement,
             rail_origin_y,
@@ -71,11 +77,11 @@ impl GeometryTable {
             gaps: Vec::with_capacity(SHIFTS * ROLLS),
             values: [Vec::with_capacity(SHIFTS * ROLLS), Vec::with_capacity(SHIFTS * ROLLS)],
         };
-        table.fill(wheel);
+        table.fill(wheel, penetration);
         Ok(table)
     }
 
-    fn fill(&mut self, wheel: &Profile) {
+    fn fill(&mut self, wheel: &Profile, penetration: f64) {
         let stations = wheel_stations(wheel);
         let nominal = self.placement.tape_half_distance - self.rail_origin_y;
         let mut turned = Vec::with_capacity(stations.len());
@@ -96,13 +102,33 @@ impl GeometryTable {
             for i in 0..SHIFTS {
                 let offset = nominal - SHIFT_RANGE + SHIFT_STEP * i as f64;
                 let (gaps, [tread, flange]) =
-                    node(&self.rail, &stations, &turned, offset, &self.placement, &mut scratch);
+                    node(&self.rail, &stations, &turned, offset, penetration, &self.placement, &mut scratch);
                 self.gaps.push(gaps);
                 self.values[0].push(tread);
                 self.values[1].push(flange);
             }
         }
     }
+}
+
+/// The rail inclined, its highest point at z = 0, and the distance of its origin from the track centre.
+///
+/// # Errors
+/// A rail that does not reach down to the gauge point on its gauge side.
+pub(crate) fn place_rail(rail: &Profile, placement: &Placement) -> Result<(Profile, f64)> {
+    let mut rail = rail.inclined(placement.rail_inclination, &KeyPath::of("track.rail_profile"))?;
+    rail.top_to_zero();
+    let gauge_point = gauge_point(&rail, placement.gauge_point_depth).ok_or_else(|| {
+        Error::input(
+            Fault::new(
+                KeyPath::of("track.gauge_point_depth"),
+                format!("{:.1} mm", 1e3 * placement.gauge_point_depth),
+                "a depth that the gauge side of the rail profile reaches",
+            )
+            .hint("the gauge side has negative y"),
+        )
+    })?;
+    Ok((rail, 0.5 * placement.gauge - gauge_point))
 }
 
 /// Gauge point: y at `depth` on the gauge side of the points themselves (the side may be too steep for the smoothed curve).
@@ -145,6 +171,7 @@ fn node(
     stations: &[WheelStation],
     turned: &[Turned],
     offset: f64,
+    penetration: f64,
     placement: &Placement,
     scratch: &mut Scratch,
 ) -> (Gaps, [Values; 2]) {
@@ -152,7 +179,7 @@ fn node(
     scratch.coarse.clear();
     scratch.coarse.extend(turned.iter().step_by(STRIDE).map(&gap));
     let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
-    let mut values = [[0.0; 12]; 2];
+    let mut values = [[0.0; 16]; 2];
     for (zone, out) in values.iter_mut().enumerate() {
         let supported = |k: usize| stations[k].chi[zone] > 0.0;
         let coarse_least = scratch
@@ -170,7 +197,7 @@ fn node(
             let first = c * STRIDE;
             let end = (first + STRIDE).min(turned.len());
             let next = scratch.coarse.get(c + 1).copied().unwrap_or(f64::INFINITY);
-            let near = (PENETRATION + SLACK) / turned[first].cos.min(turned[end - 1].cos);
+            let near = (penetration + SLACK) / turned[first].cos.min(turned[end - 1].cos);
             if scratch.coarse[c].min(next) - coarse_least > near || !(supported(first) || supported(end - 1))
             {
                 continue;
@@ -182,18 +209,25 @@ fn node(
                 }
             }
         }
-        let least = scratch.fine.iter().map(|f| f.1).fold(f64::INFINITY, f64::min);
-        if !least.is_finite() {
-            continue;
-        }
-        let average = average(rail, stations, turned, offset, zone, least, &scratch.fine);
+        let Some(&(lowest, least)) = scratch.fine.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        let average =
+            average(rail, stations, turned, offset, zone, penetration, (lowest, least), &scratch.fine);
         gaps.gap[zone] = least;
-        gaps.yaw[zone] = 0.5
-            * (placement.wheel_radius + average.z_wheel)
-            * average.angle.abs().min(STEEPEST_CONTACT).tan().powi(2);
+        let tan = average.angle.clamp(-STEEPEST_CONTACT, STEEPEST_CONTACT).tan();
+        // the second part: the profile's own distance from the running circle, foreshortened
+        gaps.yaw[zone] = 0.5 * tan * ((placement.wheel_radius + average.z_wheel) * tan - average.y_wheel);
         *out = average.values(placement);
+        if at_end(rail, turned, offset, lowest) {
+            out[0] = f64::NAN;
+        }
     }
     (gaps, values)
+}
+
+/// Whether a closest station is the last of the wheel, or over the last of the rail, so that the surfaces might come closer beyond.
+fn at_end(rail: &Profile, turned: &[Turned], offset: f64, k: usize) -> bool {
+    let beyond = |k: usize| rail.z(turned[k].y + offset).is_none();
+    k == 0 || k + 1 == turned.len() || beyond(k - 1) || beyond(k + 1)
 }
 
 /// Quasi-elastic averages of one zone.
@@ -206,22 +240,25 @@ struct Average {
     z_wheel: f64,
     angle: f64,
     curvature: f64,
+    rail_curvature: f64,
 }
 
+#[allow(clippy::too_many_arguments)] // one stage of the build
 fn average(
     rail: &Profile,
     stations: &[WheelStation],
     turned: &[Turned],
     offset: f64,
     zone: usize,
-    least: f64,
+    penetration: f64,
+    (_, least): (usize, f64),
     fine: &[(usize, f64)],
 ) -> Average {
     let mut sum = Average::default();
     let mut total = 0.0;
     for &(k, g) in fine {
         let (station, t) = (&stations[k], &turned[k]);
-        let w = 1.0 - (g - least) * t.cos / PENETRATION;
+        let w = 1.0 - (g - least) * t.cos / penetration;
         if w <= 0.0 {
             continue;
         }
@@ -235,10 +272,11 @@ fn average(
         sum.z_wheel += w * station.z;
         sum.angle -= w * 0.5 * (t.direction + local.direction);
         sum.curvature += w * (local.curvature - station.curvature);
+        sum.rail_curvature += w * local.curvature;
     }
     let scale = 1.0 / total;
     let width = total * SPACING;
-    let conforming = 0.5 * 32.0 * PENETRATION / (9.0 * width * width);
+    let conforming = 0.5 * 32.0 * penetration / (9.0 * width * width);
     Average {
         share: sum.share * scale,
         y_rail: sum.y_rail * scale,
@@ -247,11 +285,13 @@ fn average(
         z_wheel: sum.z_wheel * scale,
         angle: sum.angle * scale,
         curvature: (sum.curvature * scale).max(conforming).max(LEAST_CURVATURE),
+        rail_curvature: sum.rail_curvature * scale,
     }
 }
 
 impl Average {
     fn values(&self, placement: &Placement) -> Values {
+        let rates = self.yaw_rates(placement);
         let along = self.angle.cos() / (placement.wheel_radius + self.z_wheel);
         let modulus = hertz::effective_modulus(placement.youngs_modulus, placement.poisson);
         let patch = hertz::solve(along, self.curvature, modulus);
@@ -269,11 +309,31 @@ impl Average {
             kalker.c11,
             kalker.c22,
             kalker.c23,
+            rates[0],
+            rates[1],
+            rates[2],
+            rates[3],
         ]
+    }
+
+    /// Rates by yaw^2 of y on the rail, y on the wheel and the angle, and dz/dy.
+    fn yaw_rates(&self, placement: &Placement) -> [f64; 4] {
+        let angle = self.angle.clamp(-STEEPEST_CONTACT, STEEPEST_CONTACT);
+        let (sin, cos) = angle.sin_cos();
+        let radius = placement.wheel_radius + self.z_wheel;
+        // gamma along the wheel, outward
+        let turning = self.curvature - self.rail_curvature;
+        let slope = 0.5 * radius * (sin + sin / (cos * cos)) * turning;
+        let bound = YAW_TRAVEL / (YAW_FULL * YAW_FULL);
+        let travel = (slope / self.curvature).clamp(-bound, bound);
+        let tan = sin / cos;
+        // wheel and rail meet at the same lateral place: the outline's own shift is what the station loses
+        let on_wheel = cos * travel - radius * tan;
+        [cos * travel, on_wheel, -self.rail_curvature * travel, -tan]
     }
 }
 
-fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
+pub(crate) fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
     let mut faults = Vec::new();
     if wheel.kind != ProfileKind::Wheel {
         faults.push(Fault::new(KeyPath::of("run.wheel_profile"), "a rail profile", "a wheel profile"));
@@ -297,5 +357,8 @@ fn check(wheel: &Profile, rail: &Profile, p: &Placement) -> Result<()> {
     range("vehicle.wheelset.radius", p.wheel_radius, 0.05, 2.0, "m");
     range("vehicle.contact.youngs_modulus", p.youngs_modulus, 1e8, 1e13, "Pa");
     range("vehicle.contact.poisson", p.poisson, 0.0, 0.5, "");
+    if faults.is_empty() {
+        super::gauge::faults(wheel, p, &mut faults);
+    }
     if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }

@@ -23,10 +23,18 @@
 //! Hertz always has an ellipse, no wider than about 1.4 times the conforming stretch; pressure in a truly conformal contact is not
 //! what this table is for.
 //!
-//! **Yaw** is a first-order correction in [`GeometryTable::contacts`]: at contact angle gamma the contact leads by r tan(gamma) tan(yaw)
-//! and the gap closes by r tan(gamma)^2 yaw^2/2. Yaw does not move the lateral position of the contact.
+//! **Yaw** enters by its square, to first order, with the rates of every node. The outline of the yawed wheel stands nearer to the
+//! rail by u = r sin(gamma) tan(gamma) yaw^2/2 along the normal (vertically r tan(gamma)^2 yaw^2/2), which varies along the wheel as gamma does: the
+//! contact moves by u'/k along the rail, k the relative lateral curvature, at most [`YAW_TRAVEL`], and its angle with it; on the wheel it also leads by r tan(gamma) tan(yaw), whence
+//! the outline's own outward shift r tan(gamma) yaw^2. [`crate::contact::search`] has yaw exactly.
+//!
+//! **Ends.** Where a zone would come closest to the rail at an end of either profile, nothing is known of the contact: asking for it is an
+//! error ([`OutOfTable`]).
 
 mod build;
+mod gauge;
+
+pub(crate) use build::{check, place_rail};
 
 use crate::contact::profile::Profile;
 
@@ -36,9 +44,15 @@ pub const BLEND_FROM: f64 = 0.15;
 pub const BLEND_TO: f64 = 0.35;
 /// Normal penetration of the quasi-elastic average, m.
 pub const PENETRATION: f64 = 0.03e-3;
+/// Most that yaw may move a contact along the rail, m at [`YAW_FULL`].
+pub const YAW_TRAVEL: f64 = 2e-3;
+/// Yaw to which that bound belongs, rad.
+pub const YAW_FULL: f64 = 0.02;
 /// Bound of the relative lateral curvature, 1/m (a radius of 2 m).
 pub const LEAST_CURVATURE: f64 = 0.5;
 
+/// Most contacts of one wheel that a table gives.
+pub const MAX_CONTACTS: usize = 2;
 /// Greatest shift either way, m.
 pub const SHIFT_RANGE: f64 = 0.020;
 /// Step of the shift, m.
@@ -115,7 +129,11 @@ pub struct ContactPoint {
 
 /// The wheel has left the table: shift or roll beyond its range, or not a number.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("wheel outside the contact table: shift {:.2} mm (+-20), roll {:.2} mrad (+-20)", 1e3 * dy, 1e3 * roll)]
+#[error(
+    "wheel outside the contact table: shift {:.2} mm (+-20), roll {:.2} mrad (+-20), or standing on the end of a profile",
+    1e3 * dy,
+    1e3 * roll
+)]
 pub struct OutOfTable {
     /// Shift asked for, m.
     pub dy: f64,
@@ -128,12 +146,13 @@ pub struct OutOfTable {
 struct Gaps {
     /// Vertical gap per zone, m.
     gap: [f64; 2],
-    /// r tan(gamma)^2/2 per zone, m/rad^2.
+    /// By yaw^2, r tan(gamma)^2/2 - y_wheel tan(gamma)/2 per zone, m/rad^2.
     yaw: [f64; 2],
 }
 
-/// The rest of a node for one zone, in the order of [`ContactPoint`] from `share` on.
-type Values = [f64; 12];
+/// The rest of a node for one zone, in the order of [`ContactPoint`] from `share` on, then the rates by yaw^2 of `y_rail`, `y_wheel` and `angle`, and dz/dy at
+/// the contact. A share that is no number marks an end of a profile.
+type Values = [f64; 16];
 
 /// Table of contacts of one wheel/rail pair over shift and roll. Immutable; share it between wheels and threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,7 +233,7 @@ impl GeometryTable {
 
     #[inline(always)]
     fn values_at(&self, place: &Place, zone: usize) -> Values {
-        let mut out = [0.0; 12];
+        let mut out = [0.0; 16];
         for (n, w) in place.nodes().into_iter().zip(place.weights) {
             for (o, v) in out.iter_mut().zip(&self.values[zone][n]) {
                 *o += w * v;
@@ -223,7 +242,7 @@ impl GeometryTable {
         out
     }
 
-    /// Contacts of the wheel at shift `dy`, `roll` and depth `dz`; returns how many of `out` were written (0 to 2).
+    /// Contacts of the wheel at shift `dy`, `roll` and depth `dz`; returns how many of `out` were written (0 to [`MAX_CONTACTS`]).
     ///
     /// - `dy` (m): side coordinate of the wheel's tape-circle point relative to the rail less its nominal value, in rail
     ///   axes, + outward, towards flange contact;
@@ -234,7 +253,7 @@ impl GeometryTable {
     /// Does not allocate.
     ///
     /// # Errors
-    /// Shift or roll outside the table, or not a number.
+    /// Shift or roll outside the table, or not a number; contact at an end of a profile.
     #[inline(always)]
     pub fn contacts(
         &self,
@@ -242,7 +261,7 @@ impl GeometryTable {
         roll: f64,
         dz: f64,
         yaw: f64,
-        out: &mut [ContactPoint; 2],
+        out: &mut [ContactPoint; MAX_CONTACTS],
     ) -> Result<usize, OutOfTable> {
         let place = self.place(dy, roll)?;
         let gaps = self.gaps_at(&place);
@@ -250,10 +269,18 @@ impl GeometryTable {
         for (zone, name) in [Zone::Tread, Zone::Flange].into_iter().enumerate() {
             let penetration = dz - gaps.gap[zone] + gaps.yaw[zone] * yaw * yaw;
             if penetration > 0.0 {
-                let v = self.values_at(&place, zone);
+                let mut v = self.values_at(&place, zone);
                 if v[0] > 0.0 {
+                    let [on_rail, on_wheel, angle] = [v[12], v[13], v[14]].map(|rate| rate * yaw * yaw);
+                    v[1] += on_rail;
+                    v[2] += v[15] * on_rail;
+                    v[3] += on_wheel;
+                    v[4] += v[15] * on_wheel;
+                    v[5] += angle;
                     out[count] = point(name, penetration, &v);
                     count += 1;
+                } else if v[0].is_nan() {
+                    return Err(OutOfTable { dy, roll });
                 }
             }
         }
@@ -271,12 +298,16 @@ impl GeometryTable {
     /// The contact that a wheel just touching makes first: that of the zone with the smaller gap, penetration zero.
     ///
     /// # Errors
-    /// Shift or roll outside the table, or not a number.
+    /// Shift or roll outside the table, or not a number; contact at an end of a profile.
     pub fn touching(&self, dy: f64, roll: f64) -> Result<ContactPoint, OutOfTable> {
         let place = self.place(dy, roll)?;
         let gap = self.gaps_at(&place).gap;
         let (zone, name) = if gap[0] <= gap[1] { (0, Zone::Tread) } else { (1, Zone::Flange) };
-        Ok(point(name, 0.0, &self.values_at(&place, zone)))
+        let values = self.values_at(&place, zone);
+        if values[0].is_nan() {
+            return Err(OutOfTable { dy, roll });
+        }
+        Ok(point(name, 0.0, &values))
     }
 }
 

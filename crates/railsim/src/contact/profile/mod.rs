@@ -3,14 +3,29 @@
 //! Axes: y outward from the track centre, z down, metres. A wheel's origin is its running (tape) circle, 70 mm from
 //! the back of the flange, flange at negative y; a rail's origin is the top of the upright head, gauge corner at negative y.
 //!
+//! [`read`](read()) and [`write`](write()) know the formats, [`quality`](quality()) reports on points before they are used.
+//!
 //! Smoothness: z(y) is once continuously differentiable (cubic Hermite pieces through smoothed stations), the
 //! curvature is continuous (see [`fit`] for what smoothing does to arcs and jumps).
 
+mod crossing;
 mod csv;
 pub mod fit;
+mod gensys;
+mod miniprof;
+mod quality;
+mod read;
+mod shape;
+mod simpack;
+mod text;
+mod vampire;
 
 pub use csv::read_csv;
 pub use fit::Station;
+pub use quality::{Code, Finding, Severity, quality};
+pub use read::{Detected, Format, LengthUnit, PointList, ReadOptions, Told, WriteOptions, read, write};
+
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Fault, KeyPath, Result};
 
@@ -21,16 +36,30 @@ pub const STEEPEST: f64 = 1.5;
 pub const HALF_WIDTH: f64 = 1.0e-3;
 /// Distance of stations along the arc, m.
 pub const SPACING: f64 = 0.05e-3;
+/// Greatest distance of neighbouring points, m.
+const WIDEST_GAP: f64 = 0.02;
 /// Step of the lookup grid in y, m.
 const GRID: f64 = 0.02e-3;
 
 /// What a profile belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ProfileKind {
     /// A wheel: the body lies above the curve.
     Wheel,
     /// A rail: the body lies below the curve.
     Rail,
+}
+
+impl ProfileKind {
+    /// `wheel` or `rail`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Wheel => "wheel",
+            Self::Rail => "rail",
+        }
+    }
 }
 
 /// One cell of the lookup grid: z = c0 + t (c1 + t (c2 + t c3)), t in 0..1; curvature and direction linear.
@@ -73,7 +102,8 @@ impl Profile {
     ///
     /// # Errors
     /// - fewer than 8 points, a value that is not finite,
-    /// - two neighbouring points more than 20 mm apart, or a profile narrower than 10 mm or wider than 300 mm (units),
+    /// - a profile narrower than 10 mm or wider than 300 mm (units), one that plainly has the shape of the other kind,
+    /// - a profile that crosses itself, two neighbouring points more than 20 mm apart,
     /// - a wheel without the running circle (y = 0) or with its flange at positive y, a rail whose top is not near its origin.
     pub fn new(points: &[[f64; 2]], kind: ProfileKind, at: &KeyPath) -> Result<Self> {
         Self::smoothed(points, kind, HALF_WIDTH, at)
@@ -267,7 +297,7 @@ fn visible(all: &[Station], kind: ProfileKind) -> Vec<Station> {
 
 fn check(points: &[[f64; 2]], kind: ProfileKind, half_width: f64, at: &KeyPath) -> Result<()> {
     let mut faults = Vec::new();
-    if points.len() < 8 {
+    if points.len() < read::LEAST_POINTS {
         faults.push(Fault::new(at.clone(), format!("{} points", points.len()), "at least 8 points"));
     }
     for (i, p) in points.iter().enumerate() {
@@ -285,9 +315,16 @@ fn check(points: &[[f64; 2]], kind: ProfileKind, half_width: f64, at: &KeyPath) 
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
+    // what is wrong as a whole says more than what follows from it
+    let whole = shape::wrong_unit(points, at)
+        .or_else(|| shape::wrong_kind(&shape::Shape::of(points, Some(kind)), kind, at))
+        .or_else(|| crossing::fault(points, at));
+    if let Some(fault) = whole {
+        return Err(Error::input(fault));
+    }
     for (i, w) in points.windows(2).enumerate() {
         let gap = (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]);
-        if gap > 0.02 {
+        if gap > WIDEST_GAP {
             faults.push(Fault::new(
                 at.index(i + 1),
                 format!("{:.1} mm from the point before", 1e3 * gap),
@@ -296,14 +333,7 @@ fn check(points: &[[f64; 2]], kind: ProfileKind, half_width: f64, at: &KeyPath) 
             break;
         }
     }
-    let least = points.iter().map(|p| p[0]).fold(f64::INFINITY, f64::min);
-    let most = points.iter().map(|p| p[0]).fold(f64::NEG_INFINITY, f64::max);
-    if !(0.01..=0.3).contains(&(most - least)) {
-        faults.push(
-            Fault::new(at.clone(), format!("{:.3} mm wide", 1e3 * (most - least)), "10 to 300 mm")
-                .hint("points in files and cases are in mm"),
-        );
-    }
+    let (least, most) = shape::width(points);
     // lowest point on either side of the origin
     let lowest = |side: f64| {
         points.iter().filter(|p| p[0] * side > 0.0).map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max)

@@ -95,7 +95,7 @@ fn bad_points_are_refused_by_key() {
     bad[3][1] = f64::NAN;
     assert!(refused(&bad, ProfileKind::Rail).starts_with("profiles.r.points[3]"));
     let millimetres: Vec<_> = good.iter().map(|p| [1e3 * p[0], 1e3 * p[1]]).collect();
-    assert!(refused(&millimetres, ProfileKind::Rail).contains("neighbours"));
+    assert!(refused(&millimetres, ProfileKind::Rail).contains("1000 times too wide"));
     let upside_down: Vec<_> = good.iter().map(|p| [p[0], -p[1]]).collect();
     assert!(refused(&upside_down, ProfileKind::Rail).contains("highest point"));
     let flange_outside: Vec<_> = (0..100).map(|i| [1e-3 * f64::from(i - 30), 1e-4 * f64::from(i)]).collect();

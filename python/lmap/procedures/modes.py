@@ -1,0 +1,46 @@
+"""Modes at rest (LMAP 1.4): is every motion damped, and is none too stiff to be followed in time?
+
+One case for every wheel profile, standing with wheels that stick; a row for each mode. The criteria judge the damping ratio
+and the magnitude of the eigenvalue, which this procedure adds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from lmap.procedures.base import CaseFigures
+from lmap.spec.case import Case, VehicleData, build
+from lmap.spec.model import Spec
+from lmap.verdict import Fact
+
+if TYPE_CHECKING:
+    import polars as pl
+
+NAME = "modes"
+SUMMARY = "eigenvalues of the vehicle at rest, its wheels sticking"
+UNITS: Mapping[str, str] = {"magnitude": "rad/s"}
+
+
+def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
+    """A case for every wheel profile, or for the vehicle's own."""
+    found = []
+    for profile in spec.run.wheel_profile or [None]:
+        run: dict[str, Any] = {"kind": "modal", **spec.run.rest, "speed": 0.0}
+        if profile is not None or vehicle.wheel_profile:
+            run["wheel_profile"] = profile or vehicle.wheel_profile
+        found.append(build(label=profile or "at rest", vehicle=vehicle, track=spec.track, run=run))
+    return found
+
+
+def quantities(spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
+    """The modes with the magnitude of each eigenvalue."""
+    import polars as pl
+
+    magnitude = (pl.col("real") ** 2 + pl.col("imag") ** 2).sqrt().alias("magnitude")
+    return {label: frame.with_columns(magnitude) for label, frame in frames.items()}
+
+
+def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
+    """Nothing beside the verdicts."""
+    return []

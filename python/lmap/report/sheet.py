@@ -1,0 +1,189 @@
+"""A page of tables and figures that is no acceptance report: the same style and script, self-contained as well."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+_PLOTLY = "<script>/* plotly.js */</script>"
+"""Where the template wants the library; no text from a file can look so, its `<` being escaped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line or set of points of a plot."""
+
+    name: str
+    x: ArrayLike
+    y: ArrayLike
+    role: str = "1"
+    """`raw`, `statistic`, `limit` or the number of a colour, from 1."""
+    mode: str = "lines"
+    """`lines`, `markers` or `lines+markers`."""
+    dash: str = "solid"
+    width: float = 1.8
+    size: float = 6.0
+    hover: str = ""
+    """plotly.js template; default: name, x and y."""
+    group: str = ""
+    """Lines of one group have one entry in the legend."""
+    texts: Sequence[str] = ()
+    """For each point, as `%{text}` of the template."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A text in a plot."""
+
+    x: float
+    y: float
+    text: str
+    role: str = "raw"
+    above: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """One drawing of a figure."""
+
+    x_title: str
+    y_title: str
+    lines: Sequence[Line]
+    choice: str = ""
+    """What the reader calls it where a figure has several."""
+    caption: str = ""
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+    equal: bool = False
+    """One length on both axes."""
+    height: int = 340
+    notes: Sequence[Note] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A page."""
+
+    kind: str
+    """What it is: "Contact of wheel and rail"."""
+    title: str
+    headline: str
+    facts: Sequence[tuple[str, str]] = ()
+    """Name and value."""
+    tables: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]] = ()
+    """Title, column heads, rows."""
+    figures: Sequence[tuple[str, str, Sequence[Plot]]] = field(default=())
+    """Title, caption, drawings."""
+    messages: Sequence[str] = ()
+    footer: str = ""
+
+
+def render(sheet: Sheet) -> bytes:
+    """The page, in UTF-8."""
+    # Only here: what `lmap --help` does not need is not imported for it.
+    from jinja2 import Environment, StrictUndefined
+    from markupsafe import Markup
+
+    templates = resources.files("lmap.report") / "templates"
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    template = environment.from_string((templates / "sheet.html.j2").read_text(encoding="utf-8"))
+    page = template.render(
+        page=sheet,
+        figures=[_figure(*figure) for figure in sheet.figures],
+        style=Markup((templates / "style.css").read_text(encoding="utf-8")),
+        script=Markup((templates / "page.js").read_text(encoding="utf-8")),
+    )
+    # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
+    before, place, after = page.partition(_PLOTLY)
+    if not place:
+        raise ValueError(f"the page's template has no {_PLOTLY}")
+    return b"".join((before.encode(), b"<script>", plotly_js(), b"</script>", after.encode()))
+
+
+def script_json(value: Any) -> Any:
+    """JSON that may stand in a script element: nothing in it can end the element or open a comment."""
+    from markupsafe import Markup
+
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    for character in "<>&\u2028\u2029":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return Markup(text)
+
+
+def plotly_js() -> bytes:
+    """The library as the plotly package brings it, without importing that package's Python."""
+    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
+    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
+
+
+def _figure(title: str, caption: str, plots: Sequence[Plot]) -> dict[str, Any]:
+    choices = [plot.choice for plot in plots]
+    views = [
+        {"case": plot.choice, "stretch": "", "caption": plot.caption, "message": None, **_plotly(plot)}
+        for plot in plots
+    ]
+    return {"title": title, "caption": caption, "choices": choices, "json": script_json(views)}
+
+
+def _plotly(plot: Plot) -> dict[str, Any]:
+    x: dict[str, Any] = {"title": {"text": _escape(plot.x_title)}}
+    y: dict[str, Any] = {"title": {"text": _escape(plot.y_title)}}
+    if plot.x_range is not None:
+        x["range"] = list(plot.x_range)
+    if plot.y_range is not None:
+        y["range"] = list(plot.y_range)
+    if plot.equal:
+        y |= {"scaleanchor": "x", "scaleratio": 1}
+    notes = [
+        {
+            "x": note.x,
+            "y": note.y,
+            "text": _escape(note.text),
+            "showarrow": False,
+            "yshift": 12 if note.above else -12,
+            "role": note.role,
+        }
+        for note in plot.notes
+    ]
+    layout = {"rows": 1, "height": plot.height, "xaxis": x, "yaxis": y, "shapes": [], "annotations": notes}
+    return {"data": [_trace(line) for line in plot.lines], "layout": layout}
+
+
+def _trace(line: Line) -> dict[str, Any]:
+    name = _escape(line.name)
+    trace: dict[str, Any] = {
+        "type": "scatter",
+        "mode": line.mode,
+        "name": name,
+        "x": packed(line.x),
+        "y": packed(line.y),
+        "line": {"width": line.width, "dash": line.dash},
+        "hovertemplate": line.hover or "%{x:.4g}: %{y:.4g}<extra>" + name + "</extra>",
+        "meta": {"role": line.role, "group": line.group or line.name},
+    }
+    if line.mode != "lines":
+        trace["marker"] = {"size": line.size}
+    if line.texts:
+        trace["text"] = [_escape(text) for text in line.texts]
+    return trace
+
+
+def packed(values: ArrayLike) -> dict[str, str]:
+    """Single precision in base 64, little-endian: a fifth of the size of digits, and seven of them. NaN is a gap."""
+    raw = np.asarray(values, dtype="<f4").tobytes()
+    return {"dtype": "f4", "bdata": base64.b64encode(raw).decode("ascii")}
+
+
+def _escape(text: str) -> str:
+    """plotly.js reads a part of HTML in its texts: none of it may come from a name."""
+    return html.escape(text, quote=False)
