@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lmap import files, toml
+from lmap import files, include, toml
 from lmap.analyse import vehicle_case
 from lmap.errors import InputProblem, Problem, key_text, listed, nearest_hint
 from lmap.simulate import simulate
@@ -57,7 +57,7 @@ def lint(
     _check_codes(select, ignore)
     changes = dict(overrides or {})
     place = Path.cwd() if beside is None else Path(beside)
-    document = toml.load(files.find(files.VEHICLE, str(name), place), "vehicle")
+    document = include.load(files.find(files.VEHICLE, str(name), place))
     rows: Sequence[Mapping[str, Any]] = unreadable(document, changes, condition)
     if not rows:
         vehicle = Vehicle.load(document.path, overrides=changes, condition=condition)

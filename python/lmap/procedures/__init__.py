@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from lmap.procedures import hunting, lint, modes, view
+from lmap.procedures import critical_speed, hunting, lint, modes, view
 from lmap.procedures.base import CaseFigures, Look, Looking, Procedure
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (hunting, lint, modes, view)
+PROCEDURES: tuple[Procedure, ...] = (critical_speed, hunting, lint, modes, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
