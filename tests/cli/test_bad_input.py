@@ -174,4 +174,6 @@ def test_every_message_of_several_specs(messages: Callable[..., list[str]]) -> N
     spoil("specs/other.toml", 'procedure = "hunting"', 'procedure = "huntign"')
     found = messages("specs")
     assert [message.split(":")[1].strip() for message in found] == [SPEC, "specs/other.toml"]
-    assert found[1].endswith('found "huntign"; allowed: hunting (did you mean "hunting"?)')
+    assert found[1].endswith(
+        'found "huntign"; allowed: critical_speed, hunting, lint, modes, view (did you mean "hunting"?)'
+    )

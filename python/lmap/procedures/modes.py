@@ -39,7 +39,11 @@ def quantities(spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, p
     import polars as pl
 
     magnitude = (pl.col("real") ** 2 + pl.col("imag") ** 2).sqrt().alias("magnitude")
-    return {label: frame.with_columns(magnitude) for label, frame in frames.items()}
+    # A frame without modes is left as it is: the criterion then says which channel is missing.
+    return {
+        label: frame.with_columns(magnitude) if {"real", "imag"} <= set(frame.columns) else frame
+        for label, frame in frames.items()
+    }
 
 
 def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
