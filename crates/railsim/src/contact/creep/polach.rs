@@ -56,26 +56,22 @@ impl Polach {
         }
         let with_spin = sy + omega * p.a;
         let syc = if with_spin.abs() > sy.abs() { with_spin } else { sy };
-        let sc = sx.hypot(syc);
+        let sc = (sx * sx + syc * syc).sqrt();
         if sc == 0.0 {
             return CreepForce::default();
         }
-        let s = sx.hypot(sy);
-        let c_jj = if s > 0.0 { (p.c11 * sx).hypot(p.c22 * sy) / s } else { p.c22 };
-        let eps = 0.25 * p.shear_modulus * PI * p.a * p.b * c_jj * sc / limit;
+        let square = sx * sx + sy * sy;
+        let along = p.c11 * sx;
+        let across = p.c22 * sy;
+        let c_jj = if square > 0.0 { ((along * along + across * across) / square).sqrt() } else { p.c22 };
+        let stiff = p.shear_modulus * p.b / limit;
+        let eps = 0.25 * PI * p.a * stiff * c_jj * sc;
         let adhesion = self.k_a * eps;
-        let force = 2.0 * limit / PI * (adhesion / (1.0 + adhesion * adhesion) + (self.k_s * eps).atan());
-
-        let k = 1.0 + 6.3 * (1.0 - (-p.a / p.b).exp());
-        let eps_m = 8.0 / 3.0 * p.b * (p.a * p.b).sqrt() * p.shear_modulus * p.c23 * syc.abs() / (k * limit);
-        let d = (eps_m * eps_m - 1.0) / (eps_m * eps_m + 1.0);
-        let spin = 9.0 / 16.0
-            * p.a
-            * limit
-            * k
-            * (eps_m * (-d * d * d / 3.0 + 0.5 * d * d - 1.0 / 6.0) + (1.0 - d * d).max(0.0).powf(1.5) / 3.0);
+        let force = 2.0 / PI * limit * (adhesion / (1.0 + adhesion * adhesion) + (self.k_s * eps).atan());
+        let spin = if omega == 0.0 { 0.0 } else { spin(p, stiff * syc.abs(), limit) };
         let (fx, fy) = (-force * sx / sc, -(force * sy + spin * omega) / sc);
-        let cut = (limit / fx.hypot(fy)).min(1.0);
+        let size = fx * fx + fy * fy;
+        let cut = if size > limit * limit { limit / size.sqrt() } else { 1.0 };
         CreepForce { fx: cut * fx, fy: cut * fy }
     }
 
@@ -109,4 +105,15 @@ impl Polach {
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { k_a: 0.29, k_s: 0.09 }]
     }
+}
+
+/// F_yS, N m: what spin adds to the lateral force, times s_C/omega. `stiff` is G b |s_yC|/(Q mu), `limit` Q mu.
+fn spin(p: &Patch, stiff: f64, limit: f64) -> f64 {
+    let k = 1.0 + 6.3 * (1.0 - (-p.a / p.b).exp());
+    let eps = 8.0 / 3.0 * (p.a * p.b).sqrt() * p.c23 * stiff / k;
+    // (1 - d^2)^1.5 = (2 eps/(eps^2 + 1))^3
+    let inverse = 1.0 / (eps * eps + 1.0);
+    let d = (eps * eps - 1.0) * inverse;
+    let root = 2.0 * eps * inverse;
+    9.0 / 16.0 * p.a * limit * k * (eps * (d * d * (0.5 - d / 3.0) - 1.0 / 6.0) + root * root * root / 3.0)
 }
