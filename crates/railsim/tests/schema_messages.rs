@@ -367,7 +367,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/kind",
             json!("tiem"),
-            "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\" (did you mean time?)",
+            "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\", \"lint\" (did you mean time?)",
         ),
         ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 m"),
         (

@@ -4,6 +4,9 @@ use super::Placement;
 use crate::contact::profile::Profile;
 use crate::error::{Fault, KeyPath};
 
+/// Least steepness of what counts as a flange: 30 degrees. A cone that reaches the gauge's depth guides nothing.
+const FLANGE_SLOPE: f64 = 0.577;
+
 /// Adds a fault where the flanges do not fit between the rails, or where with one flange on its rail the other wheel's rim ends within
 /// the gauge: that wheel has nothing under it.
 ///
@@ -14,7 +17,8 @@ pub(super) fn faults(wheel: &Profile, p: &Placement, faults: &mut Vec<Fault>) {
     let flange = wheel
         .points
         .windows(2)
-        .filter(|w| w[0][0] < 0.0 && (w[0][1] - depth) * (w[1][1] - depth) <= 0.0 && w[0][1] != w[1][1])
+        .filter(|w| w[0][0] < 0.0 && (w[0][1] - depth) * (w[1][1] - depth) <= 0.0)
+        .filter(|w| (w[1][1] - w[0][1]).abs() > FLANGE_SLOPE * (w[1][0] - w[0][0]).abs())
         .map(|w| w[0][0] + (w[1][0] - w[0][0]) * (depth - w[0][1]) / (w[1][1] - w[0][1]))
         .fold(f64::NEG_INFINITY, f64::max);
     let rim = wheel.points.iter().map(|point| point[0]).fold(f64::NEG_INFINITY, f64::max);
