@@ -182,7 +182,8 @@ def test_list_shows_tests_and_criteria(lmap: Callable[..., Ran]) -> None:
     ran = lmap("list")
     assert ran.code == 0
     assert "9.1" in ran.out
-    assert "|x| < 0.35 g" in ran.out
+    # the last column may be broken anywhere
+    assert "|x| < 0.35 g" in " ".join(ran.out.split())
 
 
 def test_channels_have_unit_and_meaning(lmap: Callable[..., Ran]) -> None:
