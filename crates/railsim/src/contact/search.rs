@@ -287,7 +287,6 @@ impl Side {
         let direction = mix(p.direction, q.direction);
         let local = self.rail.local(y);
         let rail_z = self.rail.z(y).unwrap_or(z + p.gap);
-        let cos = direction.abs().min(STEEPEST_CONTACT).cos();
         let wheel = [mix(a.y, b.y), station_z(a, b, t)];
         let (k_xx, k_xy, k_wheel) = self.wheel_curvature(
             pose,
@@ -298,9 +297,9 @@ impl Side {
         let back = wheel[0] < self.tip;
         let rail_direction = local.map_or(direction, |l| l.direction);
         let angle = -0.5 * (direction + rail_direction);
-        Touch {
+        let mut touch = Touch {
             part: part(angle, back),
-            gap: (rail_z - z) * cos,
+            gap: 0.0,
             rail: [y, rail_z],
             wheel,
             ahead: mix(p.x, q.x),
@@ -308,7 +307,10 @@ impl Side {
             k_xx,
             k_xy,
             k_yy: k_wheel + local.map_or(0.0, |l| l.curvature),
-        }
+        };
+        // By the same angle that turns it back into a vertical gap: at a kink wheel and rail have not one tangent.
+        touch.gap = (rail_z - z) * vertical(&touch);
+        touch
     }
 
     /// Curvatures of the wheel in the contact plane (convex positive), along x, mixed, across.

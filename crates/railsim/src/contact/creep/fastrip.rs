@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// FaStrip (M. Sh. Sichani, R. Enblom and M. Berg, Vehicle System Dynamics 54 (2016) 572): the closed strip theory of Kalker (1967), scaled
+/// FaStrip (M. Sh. Sichani, R. Enblom and M. Berg, Vehicle System Dynamics, 2016): the closed strip theory of Kalker (1967), scaled
 /// to his coefficients of the elliptical patch, in the area of adhesion; Hertz's pressure times friction, in the direction that FASTSIM
 /// finds, in the area of slip.
 ///

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Modified FASTSIM (M. Spiryagin, O. Polach and C. Cole, Vehicle System Dynamics 51 (2013) 1739): FASTSIM whose flexibilities grow with
+/// Modified FASTSIM (M. Spiryagin, O. Polach and C. Cole, Vehicle System Dynamics, 2013): FASTSIM whose flexibilities grow with
 /// the creepage, for rails with a third-body layer.
 ///
 /// - L_eff = L/k, k = k0 (alpha + (1 - alpha)/(1 + beta eps)): from k0 of Kalker's slope at zero creepage to k0 alpha of it,
