@@ -32,7 +32,7 @@ PUBLISHED: dict[str, dict[str, float]] = {
     "modified_fastsim": {"k0": 0.54, "alpha": 0.02, "beta": 0.62},
 }
 """Parameters of a law without defaults, where its name alone is given: modified FASTSIM as Spiryagin, Polach and
-Cole, Vehicle System Dynamics 51 (2013) 1739, fitted it to a locomotive.
+Cole, Vehicle System Dynamics (2013), fitted it to a locomotive.
 """
 
 _WITH_POISSON = ("fastrip", "vermeulen_johnson")
