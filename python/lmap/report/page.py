@@ -9,7 +9,7 @@ name and then renamed, so that a reader never meets half a file; `verdicts.json`
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import resources
@@ -43,13 +43,24 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
         files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
     for spec, name in _drawings(acceptance):
         files.write(root / name, render_scene(spec.drawing or {}))
-    files.write(root / "index.html", render(acceptance))
+    files.put(root / "index.html", partial(_write_page, acceptance))
     files.write(root / "junit.xml", junit(acceptance).encode())
     files.write(root / "verdicts.json", to_json(acceptance).encode())
 
 
 def render(acceptance: Acceptance) -> bytes:
     """The page, in UTF-8."""
+    return b"".join(_parts(acceptance))
+
+
+def _write_page(acceptance: Acceptance, file: Path) -> None:
+    with file.open("wb") as stream:
+        for part in _parts(acceptance):
+            stream.write(part)
+
+
+def _parts(acceptance: Acceptance) -> Iterator[bytes]:
+    """The page piece by piece, so that it is never in memory as a whole."""
     # Only here: what `lmap --help` does not need is not imported for it.
     from jinja2 import Environment, StrictUndefined
     from markupsafe import Markup
@@ -65,10 +76,14 @@ def render(acceptance: Acceptance) -> bytes:
         script=Markup((templates / "page.js").read_text(encoding="utf-8")),
     )
     # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
-    before, place, after = page.partition(_PLOTLY)
-    if not place:
+    place = page.find(_PLOTLY)
+    if place < 0:
         raise ValueError(f"the page's template has no {_PLOTLY}")
-    return b"".join((before.encode(), b"<script>", plotly_js(), b"</script>", after.encode()))
+    yield page[:place].encode()
+    yield b"<script>"
+    yield plotly_js()
+    yield b"</script>"
+    yield page[place + len(_PLOTLY) :].encode()
 
 
 def _drawings(acceptance: Acceptance) -> list[tuple[SpecVerdict, str]]:
