@@ -46,7 +46,7 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
 
 def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
     """Load and spread of each axle, P/D of each wheel."""
-    added = {}
+    added: dict[str, str] = {}
     for name in wheelsets(channels):
         added |= {f"{name}.axle_load": "N", f"{name}.side_spread": "1"}
         added |= {f"{name}.{side}.PD": "N/m" for side in ("left", "right")}

@@ -167,3 +167,18 @@ def at_rest(spec: Spec, vehicle: VehicleData, run: Mapping[str, Any] | None = No
 def wheelsets(columns: Iterable[str]) -> list[str]:
     """Names of the wheelsets among a frame's columns, in their order: those with wheel forces."""
     return [name.removesuffix(".left.Q") for name in columns if name.endswith(".left.Q")]
+
+
+def with_unloading(frame: pl.DataFrame, level: pl.DataFrame) -> pl.DataFrame:
+    """A frame with `<axle>.<side>.unloading`: the share that a wheel has lost of its load in `level`'s first row."""
+    import polars as pl
+
+    loads = [name for name in frame.columns if name.endswith(".Q") and name in level.columns]
+    return frame.with_columns(
+        (1.0 - pl.col(name) / float(level[name][0])).alias(f"{name.removesuffix('.Q')}.unloading") for name in loads
+    )
+
+
+def unloading_units(channels: Iterable[str]) -> dict[str, str]:
+    """Names and units of the columns of `with_unloading`."""
+    return {f"{name}.{side}.unloading": "1" for name in wheelsets(channels) for side in ("left", "right")}
