@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from lmap.procedures import critical_speed, hunting, lint, modes, view
+from lmap.procedures import critical_speed, hunting, lint, modes, quasi_static, step, view
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (critical_speed, hunting, lint, modes, view)
+PROCEDURES: tuple[Procedure, ...] = (critical_speed, hunting, lint, modes, quasi_static, step, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
