@@ -14,21 +14,13 @@ UNITS: dict[str, tuple[str, float]] = {
     "J": ("energy", 1.0),
     "N": ("force", 1.0),
     "N m": ("moment", 1.0),
-<<<<<<< HEAD
     "N/m": ("force per length", 1.0),
-=======
-    "N/m": ("stiffness", 1.0),
->>>>>>> part/stage1
     "W": ("power", 1.0),
     "deg/s": ("angular velocity", 0.017453292519943295),
     "g": ("acceleration", STANDARD_GRAVITY),
     "kN": ("force", 1e3),
     "kN m": ("moment", 1e3),
-<<<<<<< HEAD
     "kN/mm": ("force per length", 1e6),
-=======
-    "kN/mm": ("stiffness", 1e6),
->>>>>>> part/stage1
     "kW": ("power", 1e3),
     "km/h": ("velocity", 1.0 / 3.6),
     "m": ("length", 1.0),
