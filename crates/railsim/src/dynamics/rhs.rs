@@ -445,6 +445,10 @@ impl System for VehicleSystem<'_> {
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
         stiff::matrices(self.model, &self.scratch, block, k, c);
     }
+
+    fn reject(&mut self) {
+        self.scratch.left_rail = None;
+    }
 }
 
 impl VehicleSystem<'_> {
