@@ -345,13 +345,13 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/integrator/kind",
             json!("huen"),
-            "run.integrator.kind: found \"huen\"; allowed: \"heun\", \"rk4\", \"ros2\" (did you mean \
+            "run.integrator.kind: found \"huen\"; allowed: \"heun\", \"heun_controlled\", \"rk4\", \"ros2\" (did you mean \
          heun?)",
         ),
         (
             "/run/integrator",
             json!("heun"),
-            "run.integrator: found \"heun\"; allowed: a table with kind = \"heun\", \"rk4\", \"ros2\"",
+            "run.integrator: found \"heun\"; allowed: a table with kind = \"heun\", \"heun_controlled\", \"rk4\", \"ros2\"",
         ),
         (
             "/run/integrator",

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, coordinate, equilibrium};
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{StepEnd, Stepper, System};
+use crate::integrator::{Stepper, System};
 use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
@@ -107,17 +107,9 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             let known = (n == 0).then_some(&dx[..]);
             let end = stepper.step_from(&mut system, step as f64 * h, &mut x, h, known);
             step += 1;
-            if let StepEnd::Singular { block } = end {
-                break 'run Ended::Diverged(Error::Diverged {
-                    t: step as f64 * h,
-                    s: x[reference],
-                    body: model.wheelsets[block].body.name.clone(),
-                    cause:
-                        "the implicit step has no solution: a number that is not finite in wheel and track"
-                            .into(),
-                });
-            }
-            if let Err(error) = divergence::check(&mut system, step as f64 * h, &x) {
+            let t = step as f64 * h;
+            let good = divergence::stepped(&system, end, t, &x);
+            if let Err(error) = good.and_then(|()| divergence::check(&mut system, t, &x)) {
                 break 'run Ended::Diverged(error);
             }
         }
@@ -154,6 +146,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
         "steps": step,
         "right_hand_sides": counts.rhs_evaluations,
         "factorisations": counts.factorisations,
+        "rejected": counts.rejected,
         "largest_eigenvalue": limit.largest_eigenvalue,
         "simulated_s": step as f64 * h,
         "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,

@@ -38,7 +38,12 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
         _ => false,
     };
     if stepped {
-        needs(node, "integrator", "a table with kind = \"heun\", \"rk4\", \"ros2\"", faults);
+        needs(
+            node,
+            "integrator",
+            "a table with kind = \"heun\", \"heun_controlled\", \"rk4\", \"ros2\"",
+            faults,
+        );
         needs(node, "output_step", "a number > 0 s", faults);
         if run.speed <= 0.0 {
             at(node, "speed", "a number > 0 m/s", faults);
