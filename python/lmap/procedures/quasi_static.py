@@ -115,7 +115,9 @@ def _pushed(spec: Spec) -> tuple[str, str]:
             body, _, axis = name.rpartition(".")
             if body and axis in ("y", "z"):
                 return body, axis
-    allowed = '[{ kind = "displacement", coordinate = "carbody.z", path = [0.0, 0.05] }], along y or z of a body'
+    allowed = (
+        '[{ kind = "displacement", coordinate = "carbody.z", path = [0.0, 0.05] }], along y or z of a body'
+    )
     raise InputProblem(Problem(key=("run", "load"), found="no displacement of a body", allowed=allowed))
 
 
