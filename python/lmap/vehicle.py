@@ -73,8 +73,8 @@ class Vehicle:
     def run(self, run: Mapping[str, Any], *, track: Mapping[str, Any] | None = None) -> pl.DataFrame:
         """One run of any kind on the vehicle's own base track: its channels.
 
-        `run` has the keys of `[run]` in a case (`docs/concepts/analyses.md`), `track` goes over the base track, 200 m of
-        it by default. Friction is 0.4 and the wheel profile the vehicle's own where `run` names none. Raises
+        `run` has the keys of `[run]` in a case (`docs/concepts/analyses.md`); `track` goes over the base track, 200 m
+        of it by default. Friction is 0.4 and the wheel profile the vehicle's own where `run` names none. Raises
         `InputProblem` or `SimulationProblem`.
         """
         from lmap.analyse import vehicle_case
