@@ -197,7 +197,9 @@ def _with_base_track(loaded: LoadedSpec, vehicle: Vehicle) -> tuple[Spec, toml.D
     name = own.pop("base", vehicle.data.track)
     if name is None:
         return loaded.spec.model_copy(update={"track": own}), None
-    beside = loaded.document.path if named_here else vehicle.document.path
+    # a path is seen from where it is written: the spec's folder, the caller's, or the vehicle's
+    in_spec = Path.cwd() if "track.base" in loaded.given else loaded.document.path
+    beside = in_spec if named_here else vehicle.document.path
     key: KeyPath = ("track", "base") if named_here else ("track",)
     owner = loaded if named_here else vehicle.document
     if not isinstance(name, str):
@@ -226,8 +228,9 @@ def _profiles(
         for name, key in case.profile_names.items():
             if name in data:
                 continue
+            from_caller = ".".join(map(str, key)) in loaded.given and files.PROFILE.is_path(name)
             try:
-                path = first_place(name, places)
+                path = first_place(name, [Path.cwd(), *places] if from_caller else places)
                 text = files.read_text(path, "profile")
             except InputProblem as error:
                 problems += [p if p.file else loaded.locate(p.at(prefix=key)) for p in error.problems]

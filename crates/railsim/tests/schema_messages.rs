@@ -369,7 +369,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             json!("tiem"),
             "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\", \"lint\" (did you mean time?)",
         ),
-        ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 m"),
+        ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 and <= 1000000.0 m"),
         (
             "/track/rail_profile",
             json!("hed"),
