@@ -29,6 +29,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("lint",),
     ("report",),
     ("prepare",),
+    ("judge",),
     ("check",),
     ("cli",),
 )
