@@ -117,7 +117,7 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
     return SpecVerdict(
         id=spec.id,
         title=spec.title,
-        file=prepared.loaded.document.shown,
+        file=prepared.loaded.asked.shown,
         procedure=spec.procedure,
         vehicle=prepared.vehicle.data.name,
         condition=spec.condition or "",
