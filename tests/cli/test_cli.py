@@ -55,7 +55,7 @@ def test_cache_shows_and_clears(lmap: Callable[..., Ran]) -> None:
     assert "\n0 cases" in lmap("cache").out
 
 
-@pytest.mark.parametrize("command", [[], ["cache"], ["check"], ["list"], ["run"], ["channels"]])
+@pytest.mark.parametrize("command", [[], ["cache"], ["check"], ["list"], ["run"], ["channels"], ["sweep"]])
 def test_every_help_shows_an_example(lmap: Callable[..., Ran], command: list[str]) -> None:
     ran = lmap(*command, "--help")
     assert ran.code == 0

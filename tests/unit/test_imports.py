@@ -31,6 +31,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("prepare",),
     ("judge",),
     ("check",),
+    ("sweep",),
     ("cli",),
 )
 TIER = {part: number for number, parts in enumerate(TIERS) for part in parts}
