@@ -340,12 +340,12 @@ def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel])
 
 
 class _Figures(CaseFigures):
-    """What is shown beside the verdicts, asked of the core where a procedure asks; what it cannot say is left out."""
+    """What is shown beside the verdicts, asked of the core once a procedure asks; what it cannot say is left out."""
 
     def __init__(self, case: Case) -> None:
         object.__setattr__(self, "case", case)
 
-    @property
+    @functools.cached_property
     def track_extremes(self) -> Mapping[str, tuple[float, float]]:
         """Least and largest deviation by name, m."""
         try:
@@ -353,7 +353,7 @@ class _Figures(CaseFigures):
         except SimulationProblem:
             return {}
 
-    @property
+    @functools.cached_property
     def conicity(self) -> float | None:
         """Equivalent conicity at `CONICITY_AMPLITUDE`."""
         try:
