@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lmap import contact, files, procedures, toml
 from lmap.analyse import first_place, vehicle_case
@@ -28,6 +32,9 @@ from lmap.spec.model import Spec
 from lmap.vehicle import Vehicle, located
 from lmap.verdict import Fact, InputFile
 
+if TYPE_CHECKING:
+    from lmap.execute.store import Store
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prepared:
@@ -45,6 +52,8 @@ class Prepared:
     inputs: tuple[InputFile, ...]
     look: Look | None = None
     """What a procedure without cases sees in the vehicle."""
+    key: str | None = None
+    """Hash of everything that judging hangs on beside the core; none where nothing is simulated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +84,11 @@ class _Sources:
         return self.loaded.locate(problem)
 
 
-def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
-    """A spec ready to run; an `InputProblem` with everything that is wrong with it."""
+def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store | None = None) -> Prepared:
+    """A spec ready to run; an `InputProblem` with everything that is wrong with it.
+
+    What the core says about cases that it has found good before is taken from the `store`.
+    """
     loaded = load(path, settings)
     procedure = _procedure(loaded)
     vehicle = _vehicle(loaded)
@@ -101,9 +113,16 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
     profiles, data = _profiles(cases, loaded, vehicle, base)
     cases = [case.with_profiles(data) for case in cases]
     sources = _Sources(loaded, vehicle, base, profiles)
-    known = _checked(spec, cases, sources, procedure)
-    _check_signals(loaded, spec, known)
-    figures = [_figures(case) for case in cases]
+    key = _key(spec, cases)
+    noted = None if store is None else _noted(store, key)
+    if noted is None:
+        known = _checked(spec, cases, sources, procedure)
+        _check_signals(loaded, spec, known)
+        facts = tuple(procedure.facts(spec, [_Figures(case) for case in cases]))
+        if store is not None:
+            store.write_note(key, [list(known.values()), [asdict(fact) for fact in facts]])
+    else:
+        known, facts = noted
     return Prepared(
         loaded=loaded,
         spec=spec,
@@ -111,9 +130,39 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
         procedure=procedure,
         cases=tuple(cases),
         channels=known,
-        facts=tuple(procedure.facts(spec, figures)),
+        facts=facts,
         inputs=_inputs(sources),
+        key=key,
     )
+
+
+def _key(spec: Spec, cases: Sequence[Case]) -> str:
+    """Hash of spec, cases and the code that reads them."""
+    written = [code_fingerprint(), spec.model_dump(mode="json"), [case.hash for case in cases]]
+    return files.sha256(json.dumps(written, sort_keys=True))
+
+
+def _noted(store: Store, key: str) -> tuple[dict[str, Channel], tuple[Fact, ...]] | None:
+    """Channels and facts of a spec that was prepared before, word for word."""
+    plain = store.note(key)
+    if plain is None:
+        return None
+    channels_, facts = plain
+    return {name: Channel(name, unit, meaning) for name, unit, meaning in channels_}, tuple(
+        Fact(**fact) for fact in facts
+    )
+
+
+@functools.cache
+def code_fingerprint() -> str:
+    """Hash of this package's Python and of the libraries that it computes with."""
+    package = Path(__file__).parent
+    sums = [
+        f"{path.relative_to(package).as_posix()} {hashlib.sha256(path.read_bytes()).hexdigest()}"
+        for path in sorted(package.rglob("*.py"))
+    ]
+    sums += [f"{name} {metadata.version(name)}" for name in ("numpy", "polars", "scipy")]
+    return files.sha256("\n".join(sums))
 
 
 def _looked_at(
@@ -260,13 +309,26 @@ def _checked(
     if problems:
         raise InputProblem(problems)
     known: dict[str, Channel] = {}
+    asked = set()
     for case in cases:
+        alike = _names_hang_on(case)
+        if alike in asked:
+            continue
+        asked.add(alike)
         for channel in channels(case):
             known.setdefault(channel.name, channel)
     added = dict(procedure.UNITS)
     if isinstance(procedure, Deriving):
         added |= procedure.derived(spec, {name: channel.unit for name, channel in known.items()})
     return known | {name: Channel(name, unit, "") for name, unit in added.items()}
+
+
+def _names_hang_on(case: Case) -> str:
+    """The case less its speed and irregularity: cases differ in them, the names of channels do not."""
+    run = {key: value for key, value in case.data["run"].items() if key != "speed"}
+    track = {key: value for key, value in case.data["track"].items() if key != "irregularity"}
+    part = {key: value for key, value in case.data.items() if key not in ("label", "profiles")}
+    return json.dumps({**part, "run": run, "track": track}, sort_keys=True)
 
 
 def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel]) -> None:
@@ -280,17 +342,27 @@ def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel])
         raise InputProblem(problems)
 
 
-def _figures(case: Case) -> CaseFigures:
-    """What is shown beside the verdicts; what the core cannot say is left out."""
-    try:
-        extremes = track_extremes(case)
-    except SimulationProblem:
-        extremes = {}
-    try:
-        conicity = contact.equivalent_conicity(case, CONICITY_AMPLITUDE)
-    except SimulationProblem:
-        conicity = None
-    return CaseFigures(case=case, track_extremes=extremes, conicity=conicity)
+class _Figures(CaseFigures):
+    """What is shown beside the verdicts, asked of the core once a procedure asks; what it cannot say is left out."""
+
+    def __init__(self, case: Case) -> None:
+        object.__setattr__(self, "case", case)
+
+    @functools.cached_property
+    def track_extremes(self) -> Mapping[str, tuple[float, float]]:
+        """Least and largest deviation by name, m."""
+        try:
+            return track_extremes(self.case)
+        except SimulationProblem:
+            return {}
+
+    @functools.cached_property
+    def conicity(self) -> float | None:
+        """Equivalent conicity at `CONICITY_AMPLITUDE`."""
+        try:
+            return contact.equivalent_conicity(self.case, CONICITY_AMPLITUDE)
+        except SimulationProblem:
+            return None
 
 
 def _inputs(sources: _Sources) -> tuple[InputFile, ...]:

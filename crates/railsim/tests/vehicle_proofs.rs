@@ -56,7 +56,7 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
         tape_half_distance: half,
     };
     let contact = Contact::Profiles {
-        table: Box::new(table),
+        table: std::sync::Arc::new(table),
         law: CreepLaw::default(),
         shear_modulus: 8.2e10,
         dissipation: 1.0,

@@ -1,6 +1,7 @@
 //! The compiled model: immutable, shared between threads.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Law, Mount, Relative, Wrench};
@@ -142,7 +143,7 @@ pub enum Contact {
     /// Profiles, Hertz, creep-force law.
     Profiles {
         /// Geometry of wheel on rail, side coordinates.
-        table: Box<GeometryTable>,
+        table: Arc<GeometryTable>,
         /// Creep-force law.
         law: CreepLaw,
         /// Combined shear modulus, Pa.

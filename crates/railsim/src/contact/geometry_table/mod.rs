@@ -33,8 +33,10 @@
 
 mod build;
 mod gauge;
+pub mod store;
 
 pub(crate) use build::{check, place_rail};
+pub use store::{Pair, Tables};
 
 use crate::contact::profile::Profile;
 
