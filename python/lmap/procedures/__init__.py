@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
-from lmap.procedures import axle_loads, bogie_rotation, coupler_forces, critical_speed, hunting, lint, modes, p2, twist, view
+from lmap.procedures import (
+    axle_loads,
+    bogie_rotation,
+    coupler_forces,
+    critical_speed,
+    heights,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    step,
+    sway,
+    twist,
+    view,
+)
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (axle_loads, bogie_rotation, coupler_forces, critical_speed, hunting, lint, modes, p2, twist, view)
+PROCEDURES: tuple[Procedure, ...] = (
+    axle_loads,
+    bogie_rotation,
+    coupler_forces,
+    critical_speed,
+    heights,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    step,
+    sway,
+    twist,
+    view,
+)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 

@@ -175,7 +175,8 @@ def with_unloading(frame: pl.DataFrame, level: pl.DataFrame) -> pl.DataFrame:
 
     loads = [name for name in frame.columns if name.endswith(".Q") and name in level.columns]
     return frame.with_columns(
-        (1.0 - pl.col(name) / float(level[name][0])).alias(f"{name.removesuffix('.Q')}.unloading") for name in loads
+        (1.0 - pl.col(name) / float(level[name][0])).alias(f"{name.removesuffix('.Q')}.unloading")
+        for name in loads
     )
 
 

@@ -5,9 +5,9 @@
 
 use serde_json::json;
 
-use crate::analysis::coordinate::{self, Coordinate};
 use crate::analysis::{Stand, Table};
 use crate::dynamics::Model;
+use crate::dynamics::coordinate::{self, Coordinate};
 use crate::dynamics::equilibrium::{self, Conditions};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::System;
