@@ -1,7 +1,7 @@
 """Outlines: cross-sections as polygons, a body displaced within a reference outline, and the least clearance.
 
-Lengths in m, y to the right and z down, seen from behind; a section and an outline are given by the points of their right
-half, from the bottom up, and are mirrored.
+Lengths in m, y to the right and z down, seen from behind; a section and an outline are given by the points of their
+right half, from the bottom up, and are mirrored.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def closed(half: Sequence[Sequence[float]]) -> Points:
 
 
 def displaced(section: Points, *, y: float, z: float, roll: float, centre: float) -> Points:
-    """A section whose body has moved by `y` (right) and `z` (down) and rolled about its `centre` (z, m), right side down."""
+    """A section whose body has moved by `y` (right) and `z` (down) and rolled about its `centre`, right side down."""
     arm = section[:, 1] - centre
     sine, cosine = math.sin(roll), math.cos(roll)
     return np.column_stack(
@@ -45,11 +45,10 @@ def displaced(section: Points, *, y: float, z: float, roll: float, centre: float
 
 
 def clearance(body: Points, outline: Points) -> Clearance:
-    """Least distance between the boundaries of a body and of the outline around it, negative where a corner is on the
-    wrong side."""
-    found = [
-        _nearest(point, outline, outer=True) for point in body
-    ] + [_swapped(_nearest(point, body, outer=False)) for point in outline]
+    """Least distance between the boundaries of a body and of the outline around it; negative with a corner outside."""
+    found = [_nearest(point, outline, outer=True) for point in body] + [
+        _swapped(_nearest(point, body, outer=False)) for point in outline
+    ]
     return min(found, key=lambda one: one.distance)
 
 
@@ -58,7 +57,7 @@ def _swapped(found: Clearance) -> Clearance:
 
 
 def _nearest(point: Points, polygon: Points, *, outer: bool) -> Clearance:
-    """From a point to a polygon's boundary; counted positive inside where the polygon is the `outer` one, else outside."""
+    """From a point to a polygon's boundary; counted positive inside where the polygon is the `outer` one."""
     begin, along = polygon, np.roll(polygon, -1, axis=0) - polygon
     squares = np.maximum((along**2).sum(axis=1), 1e-30)
     share = np.clip((((point - begin) * along).sum(axis=1)) / squares, 0.0, 1.0)
@@ -68,7 +67,9 @@ def _nearest(point: Points, polygon: Points, *, outer: bool) -> Clearance:
     right_side = _inside(point, polygon) == outer
     at = (float(point[0]), float(point[1]))
     return Clearance(
-        float(distances[best]) * (1.0 if right_side else -1.0), at, (float(feet[best, 0]), float(feet[best, 1]))
+        float(distances[best]) * (1.0 if right_side else -1.0),
+        at,
+        (float(feet[best, 0]), float(feet[best, 1])),
     )
 
 

@@ -13,6 +13,7 @@ Columns: `angle` (rad) of the bogie against the body, `moment` (N m) with the da
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -115,15 +116,21 @@ def _damping(connection: Connection, centre: float) -> float:
         return 0.0
     damping = connection.values["damping"]
     x, y = connection.points[0][0] - centre, connection.points[0][1]
-    if isinstance(damping, list) and len(damping) in (3, 6) and all(isinstance(c, int | float) for c in damping):
+    if (
+        isinstance(damping, list)
+        and len(damping) in (3, 6)
+        and all(isinstance(c, int | float) for c in damping)
+    ):
         own = float(damping[5]) if len(damping) == 6 else 0.0
         return float(damping[0]) * y**2 + float(damping[1]) * x**2 + own
     if isinstance(damping, int | float) and connection.points[0] != connection.points[1]:
         (ax, ay, _), (bx, by, _) = connection.points
-        length = sum((b - a) ** 2 for a, b in zip(*connection.points, strict=True)) ** 0.5
+        length = math.dist(*connection.points)
         arm = ((ax - centre) * (by - ay) - ay * (bx - ax)) / length
         return float(damping) * arm**2
-    raise JudgementProblem(f"what {connection.name} adds to the moment at a rate is not known: {connection.kind}")
+    raise JudgementProblem(
+        f"what {connection.name} adds to the moment at a rate is not known: {connection.kind}"
+    )
 
 
 def quantities(
@@ -133,10 +140,13 @@ def quantities(
     import polars as pl
 
     test, model = settings(spec, Settings), resolved(vehicle)
-    front, rear = two_bogies(model)
+    front, _rear = two_bogies(model)
     if STANDING not in frames or REST not in frames:
         raise JudgementProblem("the standing vehicle has no result")
-    axle = [sum(float(frames[REST][f"{one.name}.{side}.Q"][0]) for side in ("left", "right")) for one in front.axles]
+    axle = [
+        sum(float(frames[REST][f"{one.name}.{side}.Q"][0]) for side in ("left", "right"))
+        for one in front.axles
+    ]
     load = sum(axle) / len(axle)
     loop, frame = frames[STANDING], front.frame.name
     angle = loop[f"{frame}.psi"] - loop[f"{frame}.psi"][0]
@@ -174,7 +184,8 @@ def _at(angles: Sequence[float], moments: Sequence[float], angle: float) -> floa
     found = [
         abs(m + (n - m) * (angle - a) / (b - a))
         for (a, m), (b, n) in pairwise(zip(angles, moments, strict=True))
-        if a != b and (min(a, b) <= angle <= max(a, b) or (angle > angles[most] and max(a, b) == angles[most]))
+        if a != b
+        and (min(a, b) <= angle <= max(a, b) or (angle > angles[most] and max(a, b) == angles[most]))
     ]
     return max(found)
 

@@ -5,8 +5,8 @@ make an angle with the body; the lateral part of the force turns it about the ra
 bogie. Label `formula`, one row, column `unloading` (of the static wheel load) and `lateral_force` (N).
 
 Then the same forces on both ends of the car body, in balance, rolling slowly through that curve, step by step from
-nothing to the whole force: labels `draft` and `buff`, column `<axle>.<side>.unloading`. LMAP asks for time stepping only
-where the formula gives more than 90 %.
+nothing to the whole force: labels `draft` and `buff`, column `<axle>.<side>.unloading`. LMAP asks for time stepping
+only where the formula gives more than 90 %.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     import polars as pl
 
 NAME = "coupler_forces"
-SUMMARY = "wheel unloading by buff and draft at angled couplers in a curve: formula, then balance in the curve"
+SUMMARY = (
+    "wheel unloading by buff and draft at angled couplers in a curve: formula, then balance in the curve"
+)
 UNITS: Mapping[str, str] = {"unloading": "1", "lateral_force": "N"}
 
 REST = "at rest"
@@ -82,13 +84,17 @@ def _ends(model: Model) -> tuple[float, float]:
     if outline is None:
         found = f"{model.name} without [outline]"
         raise InputProblem(
-            Problem(key=("vehicle",), found=found, allowed="length_over_couplers and coupler_height in its [outline]")
+            Problem(
+                key=("vehicle",),
+                found=found,
+                allowed="length_over_couplers and coupler_height in its [outline]",
+            )
         )
     return float(outline["length_over_couplers"]), float(outline["coupler_height"])
 
 
 def _loads(test: Settings, model: Model, sign: float) -> list[dict[str, Any]]:
-    """Both couplers pull (+) or push: along the vehicle they cancel, across they add up, to the inside where they pull."""
+    """Both couplers pull (+) or push: along the vehicle they cancel, across they add up, to the inside (pull)."""
     length, height = _ends(model)
     across = 2.0 * test.force * math.sin(coupler_angle(length, test.radius))
     position = [0.0, 0.0, -height]
@@ -109,14 +115,21 @@ def quantities(
 
     test, model = settings(spec, Settings), resolved(vehicle)
     if REST not in frames:
-        raise JudgementProblem("the vehicle at rest, whose wheel loads the others are compared with, has no result")
+        raise JudgementProblem(
+            "the vehicle at rest, whose wheel loads the others are compared with, has no result"
+        )
     level = frames[REST]
     least = min(float(level[name][0]) for name in level.columns if name.endswith(".Q"))
     length, height = _ends(model)
     angle = coupler_angle(length, test.radius)
     lost = coupler_unloading(test.force, angle, height) / test.wheels_that_share
     formula = pl.DataFrame(
-        {"step": [0.0], "s": [0.0], "unloading": [lost / least], "lateral_force": [test.force * math.sin(angle)]}
+        {
+            "step": [0.0],
+            "s": [0.0],
+            "unloading": [lost / least],
+            "lateral_force": [test.force * math.sin(angle)],
+        }
     )
     return {"formula": formula} | {
         label: with_unloading(frame, level) for label, frame in frames.items() if label != REST
@@ -132,7 +145,9 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
             continue
         share = [test.force * k / max(frame.height - 1, 1) / 1e3 for k in range(frame.height)]
         worst = [
-            DrawnCurve(name=name.removesuffix(".unloading"), x=share, y=[100.0 * v for v in frame[name].to_list()])
+            DrawnCurve(
+                name=name.removesuffix(".unloading"), x=share, y=[100.0 * v for v in frame[name].to_list()]
+            )
             for name in frame.columns
             if name.endswith(".unloading")
         ]

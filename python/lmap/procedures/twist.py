@@ -1,7 +1,7 @@
 """Wheel unloading on twisted track (LMAP 2C.4a).
 
-The track under each axle is turned about the rails' middle, in steps, to the prescribed twist and one step beyond, to the
-other side and back again, the vehicle rolling so slowly that only creep lets its wheels give way sideways. What is
+The track under each axle is turned about the rails' middle, in steps, to the prescribed twist and one step beyond, to
+the other side and back again, the vehicle rolling so slowly that only creep lets its wheels give way sideways. What is
 turned is the spec's `loops`:
 
 - `bogies level`: the two bogies against each other by `twist_body` times the distance of their centres;
@@ -79,7 +79,9 @@ def angles(spec: Spec, vehicle: VehicleData) -> dict[str, dict[str, float]]:
     even = {axle.name: bogie * (axle.position[0] - front.centre) / CANT_BASE for axle in front.axles}
     leading = {front.axles[0].name: bogie * front.wheelbase / CANT_BASE}
     ramp = {
-        axle.name: body * (axle.position[0] - middle) / CANT_BASE for one in (front, rear) for axle in one.axles
+        axle.name: body * (axle.position[0] - middle) / CANT_BASE
+        for one in (front, rear)
+        for axle in one.axles
     }
     every: dict[str, dict[str, float]] = {
         "bogies level": level,
@@ -139,7 +141,10 @@ def quantities(
             continue
         loaded = with_unloading(frame, frame).with_columns(shares)
         means = [
-            pl.Series(f"{name}.{side}.average_unloading", averaged(loaded[f"{name}.{side}.unloading"].to_list(), steps))
+            pl.Series(
+                f"{name}.{side}.average_unloading",
+                averaged(loaded[f"{name}.{side}.unloading"].to_list(), steps),
+            )
             for name in wheelsets(frame.columns)
             for side in ("left", "right")
         ]

@@ -28,6 +28,8 @@ const MOST_RELAXATIONS: usize = 300;
 /// First step of a relaxation in pseudo-time, s2: a few times the inverse square of the fastest mode (some 2500 rad/s).
 const FIRST_RELAXATION: f64 = 1e-6;
 const INCREMENT: f64 = 1e-7;
+/// Share by which a full step of Newton's has to lower the residual (Armijo's rule).
+const SUFFICIENT: f64 = 0.1;
 
 /// Place of the rate of spin among a body's speeds.
 const SPIN: usize = 4;
@@ -370,13 +372,14 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
                 return Err(self.not_converged(iterations, &r));
             }
             let step = descend(self.jacobian(), &r);
-            // Halve the step until the residual falls; contacts that would part make full steps overshoot.
+            // Halve the step until the residual falls by a share of it: contacts that would part make full steps overshoot, and
+            // a slider's limit is a kink at which full steps jump from side to side.
             let mut factor = 1.0;
             let old = r.norm();
             loop {
                 self.shift_all(&step, -factor);
                 self.residual(&mut trial);
-                if trial.norm() < old {
+                if trial.norm() < (1.0 - SUFFICIENT * factor) * old {
                     break;
                 }
                 if factor < 1e-3 {
