@@ -159,7 +159,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "[condition.laden]",
         "[parameters.run]\nspeed = 3.0\n\n[condition.laden]",
         "21: vehicle.parameters.run: found the group name run; allowed: any name but condition, run, \
-         track, vehicle (on the command line these are keys of the spec)",
+         test, track, vehicle (on the command line these are keys of the spec)",
     ),
     (
         "design_condition = \"laden\"",

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from lmap.procedures import (
     axle_loads,
+    bogie_rotation,
+    coupler_forces,
     critical_speed,
+    heights,
     hunting,
     lint,
     modes,
     p2,
     quasi_static,
     step,
+    sway,
+    twist,
     view,
 )
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
@@ -18,13 +23,18 @@ from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looki
 # Keep this list sorted by name.
 PROCEDURES: tuple[Procedure, ...] = (
     axle_loads,
+    bogie_rotation,
+    coupler_forces,
     critical_speed,
+    heights,
     hunting,
     lint,
     modes,
     p2,
     quasi_static,
     step,
+    sway,
+    twist,
     view,
 )
 
