@@ -6,7 +6,8 @@ use super::run::{Load, Run, RunKind, Search};
 use crate::error::Fault;
 
 /// Keys that only some kinds of run have a use for, with those kinds.
-const OWNED: [(&str, &[RunKind]); 6] = [
+const OWNED: [(&str, &[RunKind]); 7] = [
+    ("start", &[RunKind::Time]),
     ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("hold", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("speeds", &[RunKind::Modal]),
