@@ -47,7 +47,8 @@ def test_a_procedure_never_calls_the_core(
 
     monkeypatch.setattr("lmap.toml.core", forbidden)
     for case in procedure.cases(prepared.spec, prepared.vehicle.data):
-        assert procedure.quantities(prepared.spec, {case.label: pl.DataFrame({"t": [0.0]})})
+        frames = {case.label: pl.DataFrame({"t": [0.0]})}
+        assert procedure.quantities(prepared.spec, frames, prepared.vehicle.data)
 
 
 def test_hunting_runs_every_profile_at_every_speed(prepared: Prepared) -> None:

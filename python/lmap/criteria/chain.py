@@ -67,6 +67,8 @@ class Criterion(BaseModel):
     name: str = Field(min_length=1)
     signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
+    case: Annotated[list[str] | None, BeforeValidator(_listed_names)] = Field(default=None, min_length=1)
+    """Labels, or patterns of them, of the cases that it is judged in; without it, all."""
     unit: str
     max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
     max: FiniteFloat | None = None
@@ -87,6 +89,10 @@ class Criterion(BaseModel):
         if self.source == ASSUMED and not self.reason:
             raise ValueError('a reason where the source is "assumed"')
         return self
+
+    def applies_to(self, label: str) -> bool:
+        """Whether it is judged in the case of this label."""
+        return self.case is None or any(fnmatch.fnmatchcase(label, pattern) for pattern in self.case)
 
     @property
     def bounds(self) -> tuple[float, ...]:

@@ -9,15 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
-from lmap.errors import InputProblem, Problem
+from pydantic import BaseModel, ValidationError
+
+from lmap.errors import InputProblem, KeyPath, Problem, problems_of_validation
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
-from lmap.verdict import CriterionVerdict, Fact
+from lmap.verdict import CriterionVerdict, Drawing, Fact
 
 if TYPE_CHECKING:
     import polars as pl
+
+_Settings = TypeVar("_Settings", bound=BaseModel)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,16 +45,58 @@ class Procedure(Protocol):
     NAME: str
     SUMMARY: str
     UNITS: Mapping[str, str]
-    """Units of the columns that `quantities` adds."""
+    """Units of the columns that `quantities` adds. Where their names depend on the vehicle: see `Deriving`."""
 
     def cases(self, spec: Spec, vehicle: VehicleData) -> list[Case]:
         """The cases that a spec expands to, profiles still by name."""
 
-    def quantities(self, spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
-        """What is judged, by label; by default the frames themselves."""
+    def quantities(
+        self, spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+    ) -> Mapping[str, pl.DataFrame]:
+        """What is judged, by label; by default the frames themselves.
+
+        `frames` holds the cases that reached their end. A label that is left out is not judged, one that no case
+        has is judged too. A `JudgementProblem` says why nothing can be.
+        """
 
     def facts(self, spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
         """What is shown beside the verdicts."""
+
+
+@runtime_checkable
+class Set(Procedure, Protocol):
+    """A procedure with numbers of its own in the spec's table `[test]`."""
+
+    SETTINGS: type[BaseModel]
+    """Its keys; see `settings`."""
+
+
+@runtime_checkable
+class Deriving(Procedure, Protocol):
+    """A procedure that adds columns whose names depend on the vehicle."""
+
+    def derived(self, spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
+        """Name and unit of the columns that `quantities` adds to frames with these channels (name to unit)."""
+
+
+@runtime_checkable
+class Illustrated(Procedure, Protocol):
+    """A procedure that draws what was judged."""
+
+    def drawings(
+        self, spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData
+    ) -> list[Drawing]:
+        """Plots for the report, of what `quantities` gave."""
+
+
+def settings(spec: Spec, kind: type[_Settings]) -> _Settings:
+    """The spec's `[test]`, checked; an `InputProblem` with every fault, keys starting at the spec."""
+    try:
+        return kind.model_validate(spec.test)
+    except ValidationError as error:
+        known: dict[KeyPath, list[str]] = {(): list(kind.model_fields)}
+        faults = problems_of_validation(error.errors(include_url=False), known)
+        raise InputProblem([fault.at(prefix=("test",)) for fault in faults]) from None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
