@@ -7,7 +7,7 @@ nothing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
@@ -149,3 +149,37 @@ def expand(spec: Spec, vehicle: VehicleData, *, kind: str = "time") -> list[Case
             run: dict[str, Any] = {"kind": kind, **spec.run.rest, "speed": speed, "wheel_profile": profile}
             cases.append(build(label=" ".join(parts), vehicle=vehicle, track=spec.track, run=run))
     return cases
+
+
+def at_rest(spec: Spec, vehicle: VehicleData, run: Mapping[str, Any] | None = None) -> list[Case]:
+    """A case for every wheel profile of the spec, standing in balance; `run` adds to `[run]`."""
+    profiles = spec.run.wheel_profile or [vehicle.wheel_profile or ""]
+    cases = []
+    for profile in profiles:
+        own: dict[str, Any] = {"kind": "equilibrium", "speed": 0.0, **spec.run.rest, **(run or {})}
+        if profile:
+            own["wheel_profile"] = profile
+        label = profile if spec.run.wheel_profile else "at rest"
+        cases.append(build(label=label, vehicle=vehicle, track=spec.track, run=own))
+    return cases
+
+
+def wheelsets(columns: Iterable[str]) -> list[str]:
+    """Names of the wheelsets among a frame's columns, in their order: those with wheel forces."""
+    return [name.removesuffix(".left.Q") for name in columns if name.endswith(".left.Q")]
+
+
+def with_unloading(frame: pl.DataFrame, level: pl.DataFrame) -> pl.DataFrame:
+    """A frame with `<axle>.<side>.unloading`: the share that a wheel has lost of its load in `level`'s first row."""
+    import polars as pl
+
+    loads = [name for name in frame.columns if name.endswith(".Q") and name in level.columns]
+    return frame.with_columns(
+        (1.0 - pl.col(name) / float(level[name][0])).alias(f"{name.removesuffix('.Q')}.unloading")
+        for name in loads
+    )
+
+
+def unloading_units(channels: Iterable[str]) -> dict[str, str]:
+    """Names and units of the columns of `with_unloading`."""
+    return {f"{name}.{side}.unloading": "1" for name in wheelsets(channels) for side in ("left", "right")}

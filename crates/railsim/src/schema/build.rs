@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::check::unknown;
 use super::node::{Node, quoted};
 use super::vehicle::{Body, Connection, Gap, Sensor, Shape, Vehicle, Wheelset};
-use super::written::{WrittenConnection, WrittenVehicle};
+use super::written::{WrittenConnection, WrittenGap, WrittenVehicle};
 use crate::connection::ForceLaw;
 use crate::error::{Fault, KeyPath, Segment};
 
