@@ -6,7 +6,17 @@ from lmap.procedures import axle_loads, critical_speed, curves, hunting, lint, m
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (axle_loads, critical_speed, curves, hunting, lint, modes, p2, speed_range, view)
+PROCEDURES: tuple[Procedure, ...] = (
+    axle_loads,
+    critical_speed,
+    curves,
+    hunting,
+    lint,
+    modes,
+    p2,
+    speed_range,
+    view,
+)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 

@@ -1,5 +1,5 @@
-"""Curves: one run through each curve that the spec lists, at the speed that gives a stated unbalanced acceleration, or at one
-of its own.
+"""Curves: one run through each curve that the spec lists, at its own speed or at the one that gives a stated unbalanced
+acceleration.
 
 Straight track, a clothoid, the full curve; with `exit_m` a second clothoid and straight track again. Beside the runs
 the vehicle at rest (`wheel_forces`).
@@ -95,7 +95,9 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
         if getattr(spec.run, key) is not None:
             problem = Problem(key=("run", key), found="a speed", allowed="none: each curve has its own")
             raise InputProblem(problem)
-    runs = [case for number, curve in enumerate(own.curves) for case in _runs(spec, vehicle, own, number, curve)]
+    runs = [
+        case for number, curve in enumerate(own.curves) for case in _runs(spec, vehicle, own, number, curve)
+    ]
     return runs + wheel_forces.static_cases(spec, vehicle)
 
 

@@ -1,4 +1,4 @@
-"""A range of speeds over the track that the spec writes: irregularities, isolated or cyclic, on straight track or in a curve.
+"""A range of speeds over the track that the spec writes: irregularities, isolated or cyclic, straight or in a curve.
 
 One run for every wheel profile and speed, and beside them the vehicle at rest (`wheel_forces`). `[test]` says where
 a run begins and ends, which may depend on the speed: so that it lasts long enough before and after what it

@@ -8,8 +8,8 @@ and the flange angle of its profile; it is not judged itself. Columns that are a
 | `ws1.left.unloading` | (Q0 - Q)/Q0 of the wheel: 0 at rest, 1 where it lifts |
 | `bogie1.left.unloading` | the same of all wheels on that side under the body, together |
 | `bogie1.left.LV` | sum of Y over sum of Q of these wheels (truck-side L/V) |
-| `ws1.left.nadal` | Y/Q over Nadal's limit (tan d - mu)/(1 + mu tan d), d the profile's flange angle, mu the spec's friction |
-| `ws1.prudhomme` | (Y right - Y left) over Prud'homme's limit K (10 kN + P0/3), P0 the axle's static load |
+| `ws1.left.nadal` | Y/Q over Nadal's limit, with the profile's own flange angle and the spec's friction |
+| `ws1.prudhomme` | Y right - Y left over Prud'homme's limit |
 
 Bodies that carry no wheels have none of them. The wheels under a body are those that bear on it through connections
 with `carries_weight`: all wheels for a car body.
@@ -17,11 +17,12 @@ with `carries_weight`: all wheels for a car body.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lmap.errors import JudgementProblem
+from lmap.formulas import nadal_limit, prudhomme_limit
+from lmap.procedures.base import unloading_units, wheelsets, with_unloading
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
 from lmap.view.model import resolved
@@ -74,11 +75,11 @@ def _static_label(profile: str | None) -> str:
 
 def derived(channels: Mapping[str, str]) -> dict[str, str]:
     """Name and unit of every column that `joined` may add to frames with these channels."""
-    wheelsets = [name.removesuffix(".sum_Y") for name in channels if name.endswith(".sum_Y")]
+    axles = wheelsets(channels)
     bodies = [name.removesuffix(".theta") for name in channels if name.endswith(".theta")]
-    added = {f"{wheelset}.prudhomme": "1" for wheelset in wheelsets}
+    added = unloading_units(channels) | {f"{axle}.prudhomme": "1" for axle in axles}
     for side in SIDES:
-        added |= {f"{w}.{side}.{part}": "1" for w in wheelsets for part in ("unloading", "nadal")}
+        added |= {f"{axle}.{side}.nadal": "1" for axle in axles}
         added |= {f"{body}.{side}.{part}": "1" for body in bodies for part in ("unloading", "LV")}
     return added
 
@@ -103,7 +104,7 @@ def joined(
         at_rest = frames.get(_static_label(_profile_of(spec, label)))
         if at_rest is None:
             raise JudgementProblem("the vehicle at rest was not found: there are no static wheel loads")
-        result[label] = frame.with_columns(
+        result[label] = with_unloading(frame, at_rest).with_columns(
             _columns(at_rest, groups, friction=_friction(spec), prudhomme_factor=prudhomme_factor)
         )
     return result
@@ -131,61 +132,48 @@ def _columns(
 ) -> list[pl.Expr]:
     import polars as pl
 
-    wheelsets = [name.removesuffix(".sum_Y") for name in at_rest.columns if name.endswith(".sum_Y")]
-    q0 = {f"{w}.{side}": float(at_rest.item(0, f"{w}.{side}.Q")) for w in wheelsets for side in SIDES}
-    columns = [
-        (1.0 - pl.col(f"{wheel}.Q") / load).alias(f"{wheel}.unloading") for wheel, load in q0.items()
-    ]
+    axles = wheelsets(at_rest.columns)
+    q0 = {f"{axle}.{side}": float(at_rest.item(0, f"{axle}.{side}.Q")) for axle in axles for side in SIDES}
+    columns: list[pl.Expr] = []
     if friction is not None:
         limit = nadal_limit(float(at_rest.item(0, "flange_angle")), friction)
         columns += [(pl.col(f"{wheel}.LV") / limit).alias(f"{wheel}.nadal") for wheel in q0]
-    for w in wheelsets:
-        limit = prudhomme_limit(q0[f"{w}.left"] + q0[f"{w}.right"], prudhomme_factor)
-        columns.append((pl.col(f"{w}.sum_Y") / limit).alias(f"{w}.prudhomme"))
+    for axle in axles:
+        limit = prudhomme_limit(q0[f"{axle}.left"] + q0[f"{axle}.right"], prudhomme_factor)
+        columns.append((pl.col(f"{axle}.sum_Y") / limit).alias(f"{axle}.prudhomme"))
     for body, under in groups.items():
         for side in SIDES:
             lateral, vertical = (
-                pl.sum_horizontal(f"{wheelset}.{side}.{part}" for wheelset in under) for part in ("Y", "Q")
+                pl.sum_horizontal(f"{axle}.{side}.{part}" for axle in under) for part in ("Y", "Q")
             )
-            load = sum(q0[f"{wheelset}.{side}"] for wheelset in under)
+            load = sum(q0[f"{axle}.{side}"] for axle in under)
             columns.append((lateral / vertical).alias(f"{body}.{side}.LV"))
             columns.append((1.0 - vertical / load).alias(f"{body}.{side}.unloading"))
     return columns
 
 
-def nadal_limit(flange_angle: float, friction: float) -> float:
-    """Nadal's limit of Y/Q for a flange at `flange_angle` (rad) on the point of climbing (M. J. Nadal 1896)."""
-    tangent = math.tan(flange_angle)
-    return (tangent - friction) / (1.0 + friction * tangent)
-
-
-def prudhomme_limit(axle_load: float, factor: float = 1.0) -> float:
-    """Prud'homme's limit of an axle's lateral force on the track, K (10 kN + P0/3), N (UIC 518, EN 14363)."""
-    return factor * (10e3 + axle_load / 3.0)
-
-
 def wheels_under(vehicle: VehicleData) -> dict[str, list[str]]:
     """The wheelsets that bear on each body, in order; bodies without any are left out."""
     model = resolved(vehicle)
-    wheelsets = [body.name for body in model.wheelsets]
+    axles = [body.name for body in model.wheelsets]
     beside: dict[str, set[str]] = {body.name: set() for body in model.bodies}
     for connection in model.connections:
         if connection.carries_weight:
             one, other = connection.between
             beside.setdefault(one, set()).add(other)
             beside.setdefault(other, set()).add(one)
-    height = _distances(wheelsets, beside)
+    height = _distances(axles, beside)
     found: dict[str, list[str]] = {}
-    for wheelset in wheelsets:
+    for axle in axles:
         # up alone: what stands on a bogie frame does not load the other bogie
-        reached, level = {wheelset}, [wheelset]
+        reached, level = {axle}, [axle]
         while level:
             above = {up for one in level for up in beside[one] if height[up] > height[one]} - reached
             reached |= above
             level = sorted(above)
         for body in model.bodies:
-            if body.name in reached and body.name != wheelset:
-                found.setdefault(body.name, []).append(wheelset)
+            if body.name in reached and body.name != axle:
+                found.setdefault(body.name, []).append(axle)
     return found
 
 
@@ -195,6 +183,6 @@ def _distances(start: Sequence[str], beside: Mapping[str, set[str]]) -> dict[str
     level = list(start)
     while level:
         further = sorted({other for one in level for other in beside[one]} - distance.keys())
-        distance |= {other: distance[level[0]] + 1 for other in further}
+        distance |= dict.fromkeys(further, distance[level[0]] + 1)
         level = further
     return distance
