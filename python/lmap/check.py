@@ -176,7 +176,7 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
     return SpecVerdict(
         id=spec.id,
         title=spec.title,
-        file=prepared.loaded.document.shown,
+        file=prepared.loaded.asked.shown,
         procedure=spec.procedure,
         vehicle=prepared.vehicle.data.name,
         condition=spec.condition or "",

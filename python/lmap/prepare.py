@@ -165,7 +165,7 @@ def _vehicle(loaded: LoadedSpec) -> Vehicle:
     try:
         # a path is seen from where it is written: the spec's folder, or the caller's
         from_caller = "vehicle" in loaded.given and files.VEHICLE.is_path(spec.vehicle)
-        beside = Path.cwd() if from_caller else loaded.document.path
+        beside = Path.cwd() if from_caller else loaded.written_in("vehicle")
         vehicle = Vehicle.load(spec.vehicle, beside=beside, overrides=loaded.parameters)
         known = vehicle.data.conditions
         if spec.condition is None:
@@ -291,7 +291,9 @@ def _figures(case: Case) -> CaseFigures:
 
 
 def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
-    documents = [("spec", sources.loaded.document), ("vehicle", sources.vehicle.document)]
+    documents = [("spec", sources.loaded.asked), ("vehicle", sources.vehicle.document)]
+    if sources.loaded.variant is not None:
+        documents.insert(1, ("spec", sources.loaded.document))
     if sources.base is not None:
         documents.append(("track", sources.base))
     inputs = [InputFile(role=role, path=doc.shown, sha256=doc.sha256) for role, doc in documents]

@@ -450,10 +450,15 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
              mean fastsim?)",
         ),
         (
+            "/run/disturbance",
+            json!({ "carbody.y": "x" }),
+            "run.disturbance.carbody.y: found \"x\"; allowed: a number",
+        ),
+        (
             "/run/spede",
             json!(3),
-            "run.spede: found an unknown key; allowed: contact, creep, friction, gravity, hold, integrator, kind, \
-         load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
+            "run.spede: found an unknown key; allowed: contact, creep, disturbance, friction, gravity, hold, integrator, \
+         kind, load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
         ),
     ]
 }

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from lmap.procedures import axle_loads, critical_speed, curves, hunting, lint, modes, p2, speed_range, view
+from lmap.procedures import (
+    axle_loads,
+    critical_speed,
+    curves,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    speed_range,
+    step,
+    view,
+)
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
@@ -14,7 +26,9 @@ PROCEDURES: tuple[Procedure, ...] = (
     lint,
     modes,
     p2,
+    quasi_static,
     speed_range,
+    step,
     view,
 )
 

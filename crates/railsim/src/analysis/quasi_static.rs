@@ -5,8 +5,8 @@
 
 use serde_json::json;
 
-use crate::analysis::coordinate::{self, Coordinate};
 use crate::analysis::{Stand, Table};
+use crate::dynamics::coordinate::{self, Coordinate};
 use crate::dynamics::equilibrium::{self, Conditions};
 use crate::dynamics::{Contact, Model};
 use crate::error::{Error, Fault, KeyPath, Result};

@@ -4,6 +4,7 @@
 //! [`Scratch`] may be thrown away at any step without changing a result. [`VehicleSystem`] is what an integrator sees.
 
 pub mod compile;
+pub mod coordinate;
 pub mod energy;
 pub mod equilibrium;
 pub mod linearise;

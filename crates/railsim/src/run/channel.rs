@@ -17,7 +17,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 61] = [
+const PARTS: [(&str, &str, &str); 55] = [
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force of the flange contact"),
     ("N_tread", "N", "normal force of the tread contact"),
@@ -49,9 +49,6 @@ const PARTS: [(&str, &str, &str); 61] = [
     ("lateral", "m", "irregularity: lateral deviation of the centre line, + right"),
     ("mode", "1", "number of the mode at its speed, by frequency"),
     ("natural_frequency", "Hz", "size of the eigenvalue over 2 pi"),
-    ("omega_x", "rad/s", "roll rate"),
-    ("omega_y", "rad/s", "pitch rate; of a wheelset its spin, negative rolling forward"),
-    ("omega_z", "rad/s", "yaw rate"),
     ("phi", "rad", "roll against the track frame"),
     ("psi", "rad", "yaw against the track frame, + nose right"),
     ("reaction", "N", "force that holds the displaced coordinate where it is"),
@@ -77,9 +74,6 @@ const PARTS: [(&str, &str, &str); 61] = [
     ),
     ("v", "m/s", "speed of the vehicle along the track"),
     ("vertical", "m", "irregularity: vertical deviation of the centre line, + down"),
-    ("vx", "m/s", "speed of the centre of mass along the track axis"),
-    ("vy", "m/s", "lateral speed, + right"),
-    ("vz", "m/s", "vertical speed, + down"),
     ("x", "m", "place along the track relative to the vehicle's place"),
     ("y", "m", "lateral displacement from the track centre line, + right"),
     ("z", "m", "height: depth below the top of rail, negative above"),
@@ -202,6 +196,7 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
 /// Whatever compiling the case finds.
 pub fn channels(case: &Case) -> Result<Vec<Channel>> {
     let model = crate::dynamics::compile::model(case)?;
+    crate::dynamics::coordinate::disturbance(&model, &case.run.disturbance)?;
     Ok(plan(&model)
         .into_iter()
         .map(|(name, _)| {

@@ -1,6 +1,6 @@
 //! A case in time: rolling equilibrium, fixed steps to the end of the track, one row per output step.
 
-use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, equilibrium};
+use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, coordinate, equilibrium};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::{StepEnd, Stepper, System};
 use crate::run::recorder::Recorder;
@@ -58,7 +58,7 @@ pub struct Outcome {
 /// Runs a case of kind `time`.
 ///
 /// The first wheelset starts at `run.start`, by default the beginning of the track with the vehicle behind it on a straight
-/// continuation, in rolling equilibrium on the design track at the speed asked for; the run ends when that wheelset reaches the
+/// continuation, in rolling equilibrium on the design track at the speed asked for but for `run.disturbance`; the run ends when that wheelset reaches the
 /// end of the track.
 ///
 /// # Errors
@@ -71,6 +71,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let every = (case.run.output_step / h).round().max(1.0) as usize;
     let map = model.map();
     let speed = case.run.speed;
+    let disturbance = coordinate::disturbance(&model, &case.run.disturbance)?;
 
     let places: Vec<f64> = (0..model.count()).map(|i| model.rigid(i).position.x).collect();
     let wheels = if model.wheelsets.is_empty() { &places[..] } else { &places[model.bodies.len()..] };
@@ -84,6 +85,9 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     system.rhs(0.0, &x, &mut dx);
     let limit = stability::check(&mut system, &x, integrator)?;
     control.progress(0.0, start, 0.0);
+    for (q, by) in disturbance {
+        x[q] += by;
+    }
     system.rhs(0.0, &x, &mut dx);
     // What the perturbed states of that check set.
     system.scratch.left_rail = None;

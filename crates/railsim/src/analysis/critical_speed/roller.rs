@@ -1,25 +1,11 @@
 //! A vehicle rolling on ideal straight track while its speed is changed.
 
-use std::collections::BTreeMap;
-
-use crate::analysis::{Stand, coordinate};
+use crate::analysis::Stand;
 use crate::dynamics::{Model, SpeedProgram, VehicleSystem};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::{Integrator, StepEnd, Stepper, System};
 use crate::run::{divergence, stability};
 use crate::schema::Case;
-
-/// State index and offset of every disturbed coordinate.
-///
-/// # Errors
-/// A coordinate that does not exist.
-pub(super) fn offsets(model: &Model, disturbance: &BTreeMap<String, f64>) -> Result<Vec<(usize, f64)>> {
-    let at = KeyPath::of("run.search.disturbance");
-    disturbance
-        .iter()
-        .map(|(name, by)| coordinate::find(model, name, &at.key(name)).map(|c| (c.q, *by)))
-        .collect()
-}
 
 /// Refuses a layout that is not straight and a vehicle whose speed nothing holds.
 ///
