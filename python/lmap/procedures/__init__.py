@@ -13,7 +13,16 @@ from lmap.procedures import (
     step,
     view,
 )
-from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
+from lmap.procedures.base import (
+    CaseFigures,
+    Deriving,
+    Illustrated,
+    Look,
+    Looking,
+    Procedure,
+    Rewriting,
+    Set,
+)
 
 # Keep this list sorted by name.
 PROCEDURES: tuple[Procedure, ...] = (
@@ -39,5 +48,6 @@ __all__ = [
     "Look",
     "Looking",
     "Procedure",
+    "Rewriting",
     "Set",
 ]
