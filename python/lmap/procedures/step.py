@@ -146,7 +146,7 @@ def _settle_time(frame: pl.DataFrame, wheels: Sequence[str], band: float) -> flo
     force = frame.select(wheels).to_numpy()
     mean = force.mean(axis=0)
     outside = np.flatnonzero(np.any(np.abs(force - mean) > band * np.abs(mean), axis=1))
-    if not outside.size:
+    if not outside.size or outside[-1] == 0:
         raise JudgementProblem(
             f"the start moves no wheel force by more than {band:g} of its mean: nothing settles"
         )
