@@ -46,7 +46,14 @@ ROUGH = BASE | {
             "seed": 1,
             "period": 100.0,
         },
-        {"kind": "psd", "form": "erri_b176", "level": "low", "wavelengths": [3.0, 30.0], "seed": 2},
+        {
+            "kind": "psd",
+            "form": "erri",
+            "level": "low",
+            "wavelengths": [3.0, 30.0],
+            "seed": 2,
+            "period": 90.0,
+        },
         {
             "kind": "shape",
             "shape": "versine",
@@ -64,7 +71,7 @@ WORDS = [
     "clothoid",
     "cross_level",
     "curve",
-    "erri_b176",
+    "erri",
     "fra_hamid_yang",
     "high",
     "psd",
@@ -96,7 +103,7 @@ def test_the_good_track_runs(name: str) -> None:
     assert runs_or_is_refused(case(TRACKS[name], RUN))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=st.data(), name=st.sampled_from(sorted(TRACKS)))
 def test_a_damaged_track_is_run_or_refused(data: st.DataObject, name: str) -> None:
     track = damaged(data, TRACKS[name], PLACES[name], WORDS)
