@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,7 @@ from lmap.procedures.base import settings as checked_settings
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
+from lmap.spec.measured import record_paths, with_records
 from lmap.spec.model import Spec
 from lmap.vehicle import Vehicle, located
 from lmap.verdict import Fact, InputFile
@@ -99,7 +101,10 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
             loaded.locate(Problem(key=("run",), found=found, allowed="speeds and profiles that differ"))
         )
     profiles, data = _profiles(cases, loaded, vehicle, base)
-    cases = [case.with_profiles(data) for case in cases]
+    try:
+        cases = [with_records(case.with_profiles(data), loaded.document.path) for case in cases]
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
     sources = _Sources(loaded, vehicle, base, profiles)
     known = _checked(spec, cases, sources, procedure)
     _check_signals(loaded, spec, known)
@@ -112,7 +117,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
         cases=tuple(cases),
         channels=known,
         facts=tuple(procedure.facts(spec, figures)),
-        inputs=_inputs(sources),
+        inputs=(*_inputs(sources), *_records(cases, loaded.document.path)),
     )
 
 
@@ -300,6 +305,17 @@ def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
     return tuple(inputs)
 
 
+def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
+    """The measured tracks of all cases."""
+    found: dict[Path, str] = {}
+    for case in cases:
+        for path in record_paths(case, beside).values():
+            found.setdefault(path, hashlib.sha256(path.read_bytes()).hexdigest())
+    return [
+        InputFile(role="measured track", path=files.shown(path), sha256=sha) for path, sha in found.items()
+    ]
+
+
 def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:
     """Whether the spec itself, or a setting, writes a key or the table's entry that it lies in."""
     dotted = ".".join(map(str, key[:2]))
@@ -317,6 +333,7 @@ def load_case(path: Path) -> Case:
             case = case_of(document.data, path.stem)
         else:
             case = case_of(toml.json_loads(files.read_text(path, "case"), "a case"), path.stem)
+        case = with_records(case, path)
         check_case(case)
     except InputProblem as error:
         raise InputProblem(

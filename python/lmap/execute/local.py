@@ -82,7 +82,7 @@ def run_cases(
 
     with hears:
         hears.begin([(case.label, _length(case)) for case in distinct], threads)
-        railsim.run_cases([case.json for case in distinct], threads, on_progress, on_done)
+        railsim.run_cases([case.core_json for case in distinct], threads, on_progress, on_done)
     by_hash = {
         case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
         for case, outcome in zip(distinct, outcomes, strict=True)
