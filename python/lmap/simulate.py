@@ -72,7 +72,7 @@ def channels(case: Case) -> list[Channel]:
     """The channels that a case gives."""
     railsim = toml.core()
     try:
-        return [Channel(*channel) for channel in railsim.channels(case.core_json)]
+        return [Channel(*channel) for channel in railsim.channels(case.core_json, toml.tables())]
     except railsim.InputError as error:
         raise InputProblem(toml.problems_of_core(error)) from None
 

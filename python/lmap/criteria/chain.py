@@ -69,7 +69,7 @@ class Criterion(BaseModel):
     signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
     case: Annotated[list[str] | None, BeforeValidator(_listed_names)] = Field(default=None, min_length=1)
-    """Labels, or patterns of them, of the cases that it is judged in; `!` before one leaves these out. Without it, all."""
+    """Labels, or patterns of them, of the cases that it is judged in, all without it; `!` before one leaves out."""
     unit: str
     max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
     max: FiniteFloat | None = None

@@ -6,8 +6,8 @@ every row:
 
 - `settle_time`: the last time, s, at which any wheel force is further from its mean over the run than `test.band`;
 - `settle_spread`: the latest settle time over all cases against the earliest, as a share of this;
-- `residual_leading`, `residual_trailing`: amplitude, N, that a wheel force of the front and rear half of the vehicle still
-  has in the last `test.residual_s`.
+- `residual_leading`, `residual_trailing`: amplitude, N, that a wheel force of the front and rear half of the
+  vehicle still has in the last `test.residual_s`.
 """
 
 from __future__ import annotations

@@ -6,8 +6,9 @@ use super::run::{Load, Run, RunKind, Search};
 use crate::error::Fault;
 
 /// Keys that only some kinds of run have a use for, with those kinds.
-const OWNED: [(&str, &[RunKind]); 7] = [
+const OWNED: [(&str, &[RunKind]); 8] = [
     ("disturbance", &[RunKind::Time, RunKind::CriticalSpeed]),
+    ("start", &[RunKind::Time]),
     ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("hold", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("speeds", &[RunKind::Modal]),
