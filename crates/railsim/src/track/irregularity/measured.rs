@@ -173,8 +173,11 @@ fn column(name: &str) -> Option<Column> {
     Some(Column { channel, unit })
 }
 
-/// Places (m) and the four channels (m) of every sample, in the file's own axes turned to ours.
-fn read(text: &str) -> Result<(Vec<f64>, Vec<[f64; 4]>), Vec<Bad>> {
+/// Places (m) and the four channels (m) of every sample.
+type Samples = (Vec<f64>, Vec<[f64; 4]>);
+
+/// The samples, the file's own axes turned to ours.
+fn read(text: &str) -> Result<Samples, Vec<Bad>> {
     let mut lines = text
         .trim_start_matches('\u{feff}')
         .lines()
