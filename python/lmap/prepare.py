@@ -29,6 +29,7 @@ from lmap.procedures.base import settings as checked_settings
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
+from lmap.spec.measured import record_paths, with_records
 from lmap.spec.model import Spec
 from lmap.vehicle import Vehicle, located
 from lmap.verdict import Fact, InputFile
@@ -113,7 +114,10 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
             loaded.locate(Problem(key=("run",), found=found, allowed="speeds and profiles that differ"))
         )
     profiles, data = _profiles(cases, loaded, vehicle, base)
-    cases = [case.with_profiles(data) for case in cases]
+    try:
+        cases = [with_records(case.with_profiles(data), loaded.document.path) for case in cases]
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
     sources = _Sources(loaded, vehicle, base, profiles)
     key = _key(spec, cases)
     noted = None if store is None else _noted(store, key)
@@ -133,7 +137,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
         cases=tuple(cases),
         channels=known,
         facts=facts,
-        inputs=_inputs(sources) + _outline_input(outline),
+        inputs=(*_inputs(sources), *_outline_input(outline), *_records(cases, loaded.document.path)),
         key=key,
     )
 
@@ -401,6 +405,17 @@ def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
     return tuple(inputs)
 
 
+def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
+    """The measured tracks of all cases."""
+    found: dict[Path, str] = {}
+    for case in cases:
+        for path in record_paths(case, beside).values():
+            found.setdefault(path, hashlib.sha256(path.read_bytes()).hexdigest())
+    return [
+        InputFile(role="measured track", path=files.shown(path), sha256=sha) for path, sha in found.items()
+    ]
+
+
 def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
     if outline is None:
         return ()
@@ -424,6 +439,7 @@ def load_case(path: Path) -> Case:
             case = case_of(document.data, path.stem)
         else:
             case = case_of(toml.json_loads(files.read_text(path, "case"), "a case"), path.stem)
+        case = with_records(case, path)
         check_case(case)
     except InputProblem as error:
         raise InputProblem(
