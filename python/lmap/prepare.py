@@ -93,7 +93,8 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
     procedure = _procedure(loaded)
     vehicle = _vehicle(loaded)
     spec, base = _with_base_track(loaded, vehicle)
-    _check_settings(loaded, procedure)
+    spec, outline = _with_outline(loaded, spec)
+    _check_settings(loaded, spec, procedure)
     if isinstance(procedure, Looking):
         return _looked_at(loaded, spec, vehicle, procedure, base)
     if spec.sign_off is not None:
@@ -131,7 +132,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
         cases=tuple(cases),
         channels=known,
         facts=facts,
-        inputs=_inputs(sources),
+        inputs=_inputs(sources) + _outline_input(outline),
         key=key,
     )
 
@@ -197,14 +198,29 @@ def _procedure(loaded: LoadedSpec) -> Procedure:
     return procedure
 
 
-def _check_settings(loaded: LoadedSpec, procedure: Procedure) -> None:
+def _with_outline(loaded: LoadedSpec, spec: Spec) -> tuple[Spec, toml.Document | None]:
+    """The spec with the reference outline that its `[test]` names in the name's place."""
+    name = spec.test.get("outline")
+    if not isinstance(name, str):
+        return spec, None
+    try:
+        document = toml.load(files.find(files.OUTLINE, name, loaded.document.path), "outline")
+    except InputProblem as error:
+        key: KeyPath = ("test", "outline")
+        raise InputProblem(
+            [p if p.file is not None else loaded.locate(p.at(prefix=key)) for p in error.problems]
+        ) from None
+    return spec.model_copy(update={"test": {**spec.test, "outline": document.data}}), document
+
+
+def _check_settings(loaded: LoadedSpec, spec: Spec, procedure: Procedure) -> None:
     """`[test]` against what the procedure knows."""
     try:
         if isinstance(procedure, Set):
-            checked_settings(loaded.spec, procedure.SETTINGS)
-        elif loaded.spec.test:
+            checked_settings(spec, procedure.SETTINGS)
+        elif spec.test:
             allowed = f"none: procedure {procedure.NAME} has no numbers of its own"
-            raise InputProblem(Problem(key=("test",), found=listed(loaded.spec.test), allowed=allowed))
+            raise InputProblem(Problem(key=("test",), found=listed(spec.test), allowed=allowed))
     except InputProblem as error:
         raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
 
@@ -246,7 +262,9 @@ def _with_base_track(loaded: LoadedSpec, vehicle: Vehicle) -> tuple[Spec, toml.D
     name = own.pop("base", vehicle.data.track)
     if name is None:
         return loaded.spec.model_copy(update={"track": own}), None
-    beside = loaded.document.path if named_here else vehicle.document.path
+    # a path is seen from where it is written: the spec's folder, the caller's, or the vehicle's
+    in_spec = Path.cwd() if "track.base" in loaded.given else loaded.document.path
+    beside = in_spec if named_here else vehicle.document.path
     key: KeyPath = ("track", "base") if named_here else ("track",)
     owner = loaded if named_here else vehicle.document
     if not isinstance(name, str):
@@ -275,8 +293,9 @@ def _profiles(
         for name, key in case.profile_names.items():
             if name in data:
                 continue
+            from_caller = ".".join(map(str, key)) in loaded.given and files.PROFILE.is_path(name)
             try:
-                path = first_place(name, places)
+                path = first_place(name, [Path.cwd(), *places] if from_caller else places)
                 text = files.read_text(path, "profile")
             except InputProblem as error:
                 problems += [p if p.file else loaded.locate(p.at(prefix=key)) for p in error.problems]
@@ -372,6 +391,12 @@ def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
     for path, text in sources.profiles.values():
         inputs.append(InputFile(role="profile", path=files.shown(path), sha256=files.sha256(text)))
     return tuple(inputs)
+
+
+def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
+    if outline is None:
+        return ()
+    return (InputFile(role="outline", path=outline.shown, sha256=outline.sha256),)
 
 
 def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:

@@ -9,7 +9,7 @@ use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::{GeometryTable, Pair, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
-use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
+use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::math::{Vec3, rotation};
@@ -68,7 +68,26 @@ pub fn model(case: &Case) -> Result<Model> {
         case.run.gravity,
     )?;
     model.guided = guided(vehicle);
+    model.gaps = gaps(vehicle)?;
     Ok(model)
+}
+
+fn gaps(vehicle: &Vehicle) -> Result<Vec<Gap>> {
+    vehicle
+        .gaps
+        .iter()
+        .map(|gap| {
+            let [from, to] = gap.points.map(Vec3::from);
+            let a = index(vehicle, &gap.between[0], &gap.key)?;
+            let b = index(vehicle, &gap.between[1], &gap.key)?;
+            Ok(Gap {
+                name: gap.name.clone(),
+                bodies: [a, b],
+                points: [from - position(vehicle, a), to - position(vehicle, b)],
+                direction: (to - from).normalize(),
+            })
+        })
+        .collect()
 }
 
 /// Bodies that are led along the track, by index.

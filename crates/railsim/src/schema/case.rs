@@ -196,6 +196,13 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
     if let Some(run) = root.get("run") {
         run_check::relations(run, faults);
     }
+    if let Some(start) = at("run", "start")
+        && let (Some(from), Some(to)) = (start.number(), at("track", "length").and_then(Node::number))
+        && from >= to
+    {
+        let allowed = format!("from 0 to less than track.length = {to} m");
+        faults.push(Fault::new(start.at.clone(), start.found(), allowed));
+    }
     if let Some(node) = at("track", "irregularity")
         && let Some(kind) = at("run", "kind").and_then(Node::text)
         && kind != RunKind::Time.name()
