@@ -63,7 +63,7 @@ def check_case(case: Case) -> None:
     """Raises an `InputProblem` with everything that the core finds wrong; keys start at the case."""
     railsim = toml.core()
     try:
-        railsim.check_case(case.core_json)
+        railsim.check_case(case.core_json, toml.tables())
     except railsim.InputError as error:
         raise InputProblem(toml.problems_of_core(error)) from None
 
@@ -81,7 +81,7 @@ def track_extremes(case: Case) -> dict[str, tuple[float, float]]:
     """Least and largest `lateral`, `vertical`, `cross_level` and `gauge` deviation of a case's track, m."""
     railsim = toml.core()
     try:
-        extremes = railsim.track_extremes(case.core_json)
+        extremes = railsim.track_extremes(case.core_json, toml.tables())
     except railsim.RailsimError as error:
         raise SimulationProblem(str(error)) from None
     return {name: (float(least), float(most)) for name, (least, most) in extremes.items()}
