@@ -28,6 +28,8 @@ const MOST_RELAXATIONS: usize = 300;
 /// First step of a relaxation in pseudo-time, s2: a few times the inverse square of the fastest mode (some 2500 rad/s).
 const FIRST_RELAXATION: f64 = 1e-6;
 const INCREMENT: f64 = 1e-7;
+/// The same for what connections remember: a slider passes its limit by no more than its speed on the way times a millisecond.
+const MEMORY_INCREMENT: f64 = 1e-11;
 /// Share by which a full step of Newton's has to lower the residual (Armijo's rule).
 const SUFFICIENT: f64 = 0.1;
 
@@ -343,14 +345,17 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
         let n = self.unknowns.len();
         let mut jacobian = DMatrix::zeros(n, n);
         let (mut up, mut down) = (DVector::zeros(n), DVector::zeros(n));
+        let memory = self.system.model.map().memory();
         for j in 0..n {
             let u = self.unknowns[j];
-            self.shift(u, INCREMENT);
+            let remembered = matches!(u, Unknown::State(i) if memory.contains(&i));
+            let by = if remembered { MEMORY_INCREMENT } else { INCREMENT };
+            self.shift(u, by);
             self.residual(&mut up);
-            self.shift(u, -2.0 * INCREMENT);
+            self.shift(u, -2.0 * by);
             self.residual(&mut down);
-            self.shift(u, INCREMENT);
-            jacobian.set_column(j, &((&up - &down) / (2.0 * INCREMENT)));
+            self.shift(u, by);
+            jacobian.set_column(j, &((&up - &down) / (2.0 * by)));
         }
         jacobian
     }
