@@ -159,7 +159,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "[condition.laden]",
         "[parameters.run]\nspeed = 3.0\n\n[condition.laden]",
         "21: vehicle.parameters.run: found the group name run; allowed: any name but condition, run, \
-         track, vehicle (on the command line these are keys of the spec)",
+         test, track, vehicle (on the command line these are keys of the spec)",
     ),
     (
         "design_condition = \"laden\"",
@@ -345,13 +345,13 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/integrator/kind",
             json!("huen"),
-            "run.integrator.kind: found \"huen\"; allowed: \"heun\", \"rk4\", \"ros2\" (did you mean \
+            "run.integrator.kind: found \"huen\"; allowed: \"heun\", \"heun_controlled\", \"rk4\", \"ros2\" (did you mean \
          heun?)",
         ),
         (
             "/run/integrator",
             json!("heun"),
-            "run.integrator: found \"heun\"; allowed: a table with kind = \"heun\", \"rk4\", \"ros2\"",
+            "run.integrator: found \"heun\"; allowed: a table with kind = \"heun\", \"heun_controlled\", \"rk4\", \"ros2\"",
         ),
         (
             "/run/integrator",

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from lmap.procedures import (
     axle_loads,
+    bogie_rotation,
+    coupler_forces,
     critical_speed,
+    curves,
+    heights,
     hunting,
     lint,
     modes,
     p2,
     quasi_static,
+    speed_range,
     step,
+    sway,
+    twist,
     view,
 )
 from lmap.procedures.base import (
@@ -27,13 +34,20 @@ from lmap.procedures.base import (
 # Keep this list sorted by name.
 PROCEDURES: tuple[Procedure, ...] = (
     axle_loads,
+    bogie_rotation,
+    coupler_forces,
     critical_speed,
+    curves,
+    heights,
     hunting,
     lint,
     modes,
     p2,
     quasi_static,
+    speed_range,
     step,
+    sway,
+    twist,
     view,
 )
 
