@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import contextlib
 import os
+import re
 import shutil
 import tempfile
 import time
@@ -162,7 +163,7 @@ def find_specs(given: str | Path) -> list[Path]:
     """The files that a SPEC argument means: a file, every spec of a folder, or a test by name or id."""
     text, path = str(given), Path(given)
     if path.is_dir() and not path.is_symlink():
-        found = sorted(path.glob("*.toml"))
+        found = in_order(path.glob("*.toml"))
         if not found:
             raise InputProblem(
                 Problem(file=files.shown(path), found="a folder without specs", allowed="*.toml in it")
@@ -190,6 +191,16 @@ def shipped() -> list[Path]:
     """Every spec that can be called by name from the working folder, sorted; the nearest of a name wins."""
     by_name = {name: files.find(files.SPEC, name, Path.cwd()) for name in files.names(files.SPEC, Path.cwd())}
     return [by_name[name] for name in sorted(by_name)]
+
+
+def in_order(paths: Iterable[Path]) -> list[Path]:
+    """By id, as the procedure has them: numbers count as numbers, so that 2C.10 follows 2C.9."""
+
+    def key(path: Path) -> tuple[list[tuple[int, str]], str]:
+        parts = re.findall(r"[0-9]+|[^0-9.]+", spec_id(path))
+        return [(int(one), "") if one.isdigit() else (0, one) for one in parts], path.name
+
+    return sorted(paths, key=key)
 
 
 def spec_id(path: Path) -> str:

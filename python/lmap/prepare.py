@@ -6,7 +6,7 @@ import functools
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,7 @@ from lmap.procedures.base import (
     Look,
     Looking,
     Procedure,
+    Rewriting,
     Set,
 )
 from lmap.procedures.base import settings as checked_settings
@@ -320,23 +321,30 @@ def _checked(
     spec: Spec, cases: Sequence[Case], sources: _Sources, procedure: Procedure
 ) -> dict[str, Channel]:
     """The channels that any case gives and those that are derived, after the core has checked every case."""
+
+    def told(case: Case, problem: Problem) -> Problem:
+        """A fault of a case where the spec writes it, or the file that does."""
+        if isinstance(procedure, Rewriting):
+            problem = replace(problem, key=procedure.origin(spec, case.label, problem.key))
+        return sources.locate(problem)
+
+    known: dict[str, Channel] = {}
     problems: list[Problem] = []
+    asked: set[str] = set()
     for case in cases:
         try:
             check_case(case)
+            alike = _names_hang_on(case)
+            if alike in asked:
+                continue
+            asked.add(alike)
+            # compiles the model, and knows more: names of coordinates, of bodies
+            for channel in channels(case):
+                known.setdefault(channel.name, channel)
         except InputProblem as error:
-            problems += [sources.locate(problem) for problem in error.problems]
+            problems += [told(case, problem) for problem in error.problems]
     if problems:
         raise InputProblem(problems)
-    known: dict[str, Channel] = {}
-    asked = set()
-    for case in cases:
-        alike = _names_hang_on(case)
-        if alike in asked:
-            continue
-        asked.add(alike)
-        for channel in channels(case):
-            known.setdefault(channel.name, channel)
     added = dict(procedure.UNITS)
     if isinstance(procedure, Deriving):
         added |= procedure.derived(spec, {name: channel.unit for name, channel in known.items()})

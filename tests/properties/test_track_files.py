@@ -52,7 +52,7 @@ ROUGH = BASE | {
             "level": "low",
             "wavelengths": [3.0, 30.0],
             "seed": 2,
-            "period": 100.0,
+            "period": 90.0,
         },
         {
             "kind": "shape",
@@ -170,7 +170,7 @@ def test_the_good_track_runs(name: str) -> None:
     assert runs_or_is_refused(case(TRACKS[name], RUN))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=st.data(), name=st.sampled_from(sorted(TRACKS)))
 def test_a_damaged_track_is_run_or_refused(data: st.DataObject, name: str) -> None:
     track = damaged(data, TRACKS[name], PLACES[name], WORDS)
