@@ -26,7 +26,7 @@ def lint(
     integrator: Annotated[
         str,
         typer.Option(
-            metavar="KIND", help="The scheme that the step is for: heun, heun_controlled, rk4, ros2."
+            metavar="KIND", help="The scheme that the step is for: heun, rk4, ros2."
         ),
     ] = "rk4",
     step: Annotated[
