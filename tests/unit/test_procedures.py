@@ -15,6 +15,7 @@ from lmap.errors import InputProblem, JudgementProblem
 from lmap.prepare import Prepared, prepare
 from lmap.procedures import hunting
 from lmap.procedures.base import CaseFigures, Procedure
+from lmap.spec.case import VehicleData
 from lmap.spec.model import RunPart, Spec
 
 pytestmark = pytest.mark.usefixtures("toy")
@@ -38,12 +39,40 @@ def _own(procedure: Procedure, spec: Spec) -> Spec:
     """The first spec that ships with this procedure, which has the keys that it needs; else the toy's."""
     written = [tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(SPECS.glob("*.toml"))]
     found = next((one for one in written if one["procedure"] == procedure.NAME), None)
-    return spec if found is None else Spec.model_validate(found)
+    if found is None:
+        return spec
+    outline = found.get("test", {}).get("outline")
+    if outline is not None:  # laid in by `prepare`
+        text = (SPECS.parent / "models" / "outlines" / f"{outline}.toml").read_text(encoding="utf-8")
+        found["test"]["outline"] = tomllib.loads(text)
+    return Spec.model_validate(found)
+
+
+@pytest.fixture
+def locomotive() -> VehicleData:
+    """The reference locomotive as written: procedures look at its bodies, which the toy has not."""
+    path = SPECS.parent / "models" / "vehicles" / "coco134.toml"
+    document = tomllib.loads(path.read_text(encoding="utf-8"))
+    return VehicleData(
+        file=str(path),
+        document=document,
+        name=document["name"],
+        title=document["title"],
+        design_speed=document["design_speed_kmh"] / 3.6,
+        wheel_radius=0.5335,
+        wheel_profile=document["wheel_profile"],
+        track=document["track"],
+        condition=None,
+        conditions=("full", "tare"),
+        design_condition="full",
+        mass=134e3,
+        bodies=("carbody", "bogie1", "bogie2"),
+    )
 
 
 @every_procedure
-def test_a_procedure_is_pure(procedure: Procedure, prepared: Prepared) -> None:
-    spec, vehicle = _own(procedure, prepared.spec), prepared.vehicle.data
+def test_a_procedure_is_pure(procedure: Procedure, prepared: Prepared, locomotive: VehicleData) -> None:
+    spec, vehicle = _own(procedure, prepared.spec), locomotive
     before = (spec.model_dump(), copy.deepcopy(dict(vehicle.document)))
     first, second = procedure.cases(spec, vehicle), procedure.cases(spec, vehicle)
     assert [case.hash for case in first] == [case.hash for case in second]
@@ -52,17 +81,17 @@ def test_a_procedure_is_pure(procedure: Procedure, prepared: Prepared) -> None:
 
 @every_procedure
 def test_a_procedure_never_calls_the_core(
-    procedure: Procedure, prepared: Prepared, monkeypatch: pytest.MonkeyPatch
+    procedure: Procedure, prepared: Prepared, locomotive: VehicleData, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def forbidden() -> None:
         raise AssertionError("a procedure asked for the core")
 
     monkeypatch.setattr("lmap.toml.core", forbidden)
     spec = _own(procedure, prepared.spec)
-    frames = {case.label: pl.DataFrame({"t": [0.0]}) for case in procedure.cases(spec, prepared.vehicle.data)}
-    # a formula misses its columns in these frames and its bodies in the toy vehicle; it may not ask the core for them
+    frames = {case.label: pl.DataFrame({"t": [0.0]}) for case in procedure.cases(spec, locomotive)}
+    # a formula misses its columns in these frames; it may not ask the core for them
     with contextlib.suppress(JudgementProblem, KeyError, pl.exceptions.PolarsError):
-        assert procedure.quantities(spec, frames, prepared.vehicle.data) is not None
+        assert procedure.quantities(spec, frames, locomotive) is not None
 
 
 def test_hunting_runs_every_profile_at_every_speed(prepared: Prepared) -> None:
