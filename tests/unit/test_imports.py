@@ -29,7 +29,9 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("lint",),
     ("report",),
     ("prepare",),
+    ("judge",),
     ("check",),
+    ("sweep",),
     ("cli",),
 )
 TIER = {part: number for number, parts in enumerate(TIERS) for part in parts}

@@ -7,18 +7,29 @@ from lmap.procedures import (
     bogie_rotation,
     coupler_forces,
     critical_speed,
+    curves,
     heights,
     hunting,
     lint,
     modes,
     p2,
     quasi_static,
+    speed_range,
     step,
     sway,
     twist,
     view,
 )
-from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
+from lmap.procedures.base import (
+    CaseFigures,
+    Deriving,
+    Illustrated,
+    Look,
+    Looking,
+    Procedure,
+    Rewriting,
+    Set,
+)
 
 # Keep this list sorted by name.
 PROCEDURES: tuple[Procedure, ...] = (
@@ -26,12 +37,14 @@ PROCEDURES: tuple[Procedure, ...] = (
     bogie_rotation,
     coupler_forces,
     critical_speed,
+    curves,
     heights,
     hunting,
     lint,
     modes,
     p2,
     quasi_static,
+    speed_range,
     step,
     sway,
     twist,
@@ -49,5 +62,6 @@ __all__ = [
     "Look",
     "Looking",
     "Procedure",
+    "Rewriting",
     "Set",
 ]

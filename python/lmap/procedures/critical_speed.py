@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lmap.errors import KeyPath
 from lmap.procedures.base import CaseFigures, expand, settings
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
@@ -71,6 +72,16 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
                 run = {key: value for key, value in run.items() if key not in _STEPPED}
             found.append(Case(label, {**own.data, "label": label, "run": run}))
     return found
+
+
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """A key of a search beside the spec's own is written in its table, if that has it."""
+    for name, beside in settings(spec, Settings).beside.items():
+        if label.removeprefix(BESIDE).startswith(name) and label.startswith(BESIDE) and key[:1] == ("run",):
+            own = "speed_kmh" if key[1:2] == ("speed",) else str(key[1]) if len(key) > 1 else ""
+            if getattr(beside, own, None) is not None:
+                return ("test", "beside", name, own, *key[2:])
+    return key
 
 
 def quantities(

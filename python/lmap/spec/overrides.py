@@ -17,6 +17,9 @@ from lmap.errors import InputProblem, Problem, nearest_hint
 SPEC_KEYS = ("condition", "run", "test", "track", "vehicle")
 """First parts of a key that mean the spec."""
 
+_EXAMPLES = {"run": "run.speed_kmh", "test": "test.dip_angle", "track": "track.length"}
+"""Tables of the spec, with one of their keys."""
+
 _SAME: dict[tuple[str, ...], tuple[str, ...]] = {
     ("run", "speed"): ("run", "speed_kmh"),
     ("run", "speed_kmh"): ("run", "speed"),
@@ -100,9 +103,8 @@ def apply(document: Mapping[str, Any], settings: Mapping[str, Any]) -> tuple[dic
             allowed = f'"{path[0]}" alone, or the name of a parameter of the vehicle'
             problems.append(Problem(key=("set", key), found=f'"{key}"', allowed=allowed))
             continue
-        if path[0] in ("track", "run", "test") and (len(path) == 1 or not all(path)):
-            example = {"run": "run.speed_kmh", "test": "test.radius", "track": "track.length"}[path[0]]
-            allowed = f'a key of [{path[0]}], e.g. "{example}"'
+        if path[0] in _EXAMPLES and (len(path) == 1 or not all(path)):
+            allowed = f'a key of [{path[0]}], e.g. "{_EXAMPLES[path[0]]}"'
             hint = nearest_hint(key, ())
             problems.append(Problem(key=("set", key), found=f'"{key}"', allowed=allowed, hint=hint))
             continue

@@ -6,9 +6,9 @@
 use serde_json::json;
 
 use crate::analysis::{Stand, Table};
-use crate::dynamics::Model;
 use crate::dynamics::coordinate::{self, Coordinate};
 use crate::dynamics::equilibrium::{self, Conditions};
+use crate::dynamics::{Contact, Model};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::System;
 use crate::math::Vec3;
@@ -18,7 +18,7 @@ use crate::schema::Case;
 use crate::schema::run::{Axis, Load};
 
 /// Columns before the channels of the vehicle.
-const OWN: [&str; 5] = ["step", "curvature", "cant", "gradient", "unbalanced"];
+const OWN: [&str; 6] = ["step", "curvature", "cant", "gradient", "unbalanced", "flange_angle"];
 
 /// A load with its names resolved.
 #[derive(Debug)]
@@ -136,8 +136,8 @@ fn path(loads: &[Load], steps: u32) -> Vec<Vec<f64>> {
 /// Runs a case of kind `equilibrium` or `quasi_static`.
 ///
 /// Columns: load `step`, `curvature`, `cant` and `gradient` at the vehicle's centre, `unbalanced` lateral acceleration in the
-/// plane of the rails (V2/R cos cant - g sin cant, + to the left of a right-hand curve, that is outward), each force as
-/// `<body>.force_y`, what holds a displaced coordinate as `<coordinate>.reaction`, then the channels of a run in time.
+/// plane of the rails (V2/R cos cant - g sin cant, + to the left of a right-hand curve, that is outward), the wheel profile's
+/// `flange_angle` (NaN for the textbook's contact), each force as `<body>.force_y`, what holds a displaced coordinate as `<coordinate>.reaction`, then the channels of a run in time.
 ///
 /// # Errors
 /// Faults of the case; [`Error::NotConverged`] where there is no balance at the first load step. One that is lost on the way is
@@ -255,7 +255,11 @@ impl Way<'_> {
         }
         let [curvature, cant, gradient] = stand.curve();
         let unbalanced = speed * speed * curvature * cant.cos() - stand.model.gravity * cant.sin();
-        let mut row = vec![curvature, cant, gradient, unbalanced];
+        let flange_angle = match &stand.model.contact {
+            Contact::Profiles { table, .. } => table.flange_angle(),
+            Contact::Textbook(_) => f64::NAN,
+        };
+        let mut row = vec![curvature, cant, gradient, unbalanced, flange_angle];
         for (action, value) in self.actions.iter().zip(values) {
             match action {
                 Action::Force { .. } => row.push(*value),

@@ -28,6 +28,8 @@ const MOST_RELAXATIONS: usize = 300;
 /// First step of a relaxation in pseudo-time, s2: a few times the inverse square of the fastest mode (some 2500 rad/s).
 const FIRST_RELAXATION: f64 = 1e-6;
 const INCREMENT: f64 = 1e-7;
+/// Of a singular value decomposition; far more than it takes.
+const MOST_SWEEPS: usize = 10_000;
 /// The same for what connections remember: a slider passes its limit by no more than its speed on the way times a millisecond.
 const MEMORY_INCREMENT: f64 = 1e-11;
 /// Share by which a full step of Newton's has to lower the residual (Armijo's rule).
@@ -393,6 +395,8 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
                         self.set_speeds();
                         return Ok(());
                     }
+                    // At the kink of a contact about to part no fraction lowers the residual. A thousandth of the step goes
+                    // past it; the count of iterations ends what does not come back, and relaxation takes over.
                     break;
                 }
                 self.shift_all(&step, factor);
@@ -453,9 +457,11 @@ fn descend(jacobian: DMatrix<f64>, r: &DVector<f64>) -> DVector<f64> {
     if let Some(step) = lu.solve(r).filter(|s| s.amax() < 1.0) {
         return step;
     }
-    let svd = jacobian.svd(true, true);
-    let tolerance = svd.singular_values.max() * 1e-13;
-    svd.solve(r, tolerance).unwrap_or_else(|_| DVector::zeros(r.len()))
+    // Of a matrix that is not finite the decomposition would never end. No step then: the caller shortens, relaxes or gives up.
+    let finite = jacobian.iter().all(|v| v.is_finite());
+    let svd = finite.then(|| jacobian.try_svd(true, true, f64::EPSILON, MOST_SWEEPS)).flatten();
+    svd.and_then(|svd| svd.solve(r, svd.singular_values.max() * 1e-13).ok())
+        .unwrap_or_else(|| DVector::zeros(r.len()))
 }
 
 fn describe(model: &Model, equation: usize) -> String {

@@ -15,7 +15,7 @@ pub mod scratch;
 pub mod state;
 pub mod stiff;
 
-pub use model::{Contact, Link, Model, Sensor, SpeedHold, Support};
+pub use model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 pub use rhs::{SpeedProgram, VehicleSystem};
 pub use scratch::Scratch;
 pub use state::StateMap;

@@ -17,7 +17,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 53] = [
+const PARTS: [(&str, &str, &str); 55] = [
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force of the flange contact"),
     ("N_tread", "N", "normal force of the tread contact"),
@@ -28,6 +28,7 @@ const PARTS: [(&str, &str, &str); 53] = [
     ("az", "m/s2", "acceleration along the body's z axis (down), without gravity"),
     ("branch", "1", "number of the root locus that a mode belongs to"),
     ("cant", "rad", "cant under the vehicle's centre, + right rail lower"),
+    ("clearance", "m", "what is left between the two points of a gap, negative where they have met"),
     ("contact_y", "m", "lateral place of the main contact on the wheel profile, + to the field side"),
     ("creep_x", "1", "longitudinal creepage of the main contact"),
     ("creep_y", "1", "lateral creepage of the main contact, + outward"),
@@ -37,6 +38,7 @@ const PARTS: [(&str, &str, &str); 53] = [
     ("curvature", "1/m", "curvature under the vehicle's centre, + to the right"),
     ("damping_ratio", "1", "share of critical damping, negative where the motion grows"),
     ("direction", "1", "-1 while the speed is stepped down, +1 up"),
+    ("flange_angle", "rad", "steepest angle of the wheel profile's flange face against the axle"),
     ("force_x", "N", "load on the body, + forward"),
     ("force_y", "N", "load on the body, + right"),
     ("force_z", "N", "load on the body, + down"),
@@ -96,6 +98,7 @@ pub(crate) enum Source {
     Irregularity(usize),
     SensorPlace(usize, usize),
     SensorAcceleration(usize, usize),
+    Gap(usize),
     Wheel(usize, usize, WheelQuantity),
     SumLV(usize),
     SumY(usize),
@@ -148,6 +151,9 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
         for (axis, part) in ["ax", "ay", "az"].into_iter().enumerate() {
             plan.push((format!("{}.{part}", sensor.name), Source::SensorAcceleration(i, axis)));
         }
+    }
+    for (i, gap) in model.gaps.iter().enumerate() {
+        plan.push((format!("{}.clearance", gap.name), Source::Gap(i)));
     }
     if !model.wheelsets.is_empty() {
         for (i, part) in ["lateral", "vertical", "cross_level", "gauge"].into_iter().enumerate() {

@@ -78,6 +78,10 @@ pub struct Run {
     #[serde(default = "standard_gravity")]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s2"))]
     pub gravity: f64,
+    /// `time`: where the first wheelset is at the start, m; 0, the beginning of the track, if absent.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "unit" = "m"))]
+    pub start: f64,
     /// Where the vehicle's centre stands on the layout, m; the middle of the track if absent. Not for `time`.
     #[serde(default)]
     #[schemars(extend("unit" = "m"))]

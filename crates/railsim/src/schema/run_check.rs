@@ -6,8 +6,9 @@ use super::run::{Load, Run, RunKind, Search};
 use crate::error::Fault;
 
 /// Keys that only some kinds of run have a use for, with those kinds.
-const OWNED: [(&str, &[RunKind]); 7] = [
+const OWNED: [(&str, &[RunKind]); 8] = [
     ("disturbance", &[RunKind::Time, RunKind::CriticalSpeed]),
+    ("start", &[RunKind::Time]),
     ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("hold", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("speeds", &[RunKind::Modal]),
@@ -38,7 +39,12 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
         _ => false,
     };
     if stepped {
-        needs(node, "integrator", "a table with kind = \"heun\", \"rk4\", \"ros2\"", faults);
+        needs(
+            node,
+            "integrator",
+            "a table with kind = \"heun\", \"heun_controlled\", \"rk4\", \"ros2\"",
+            faults,
+        );
         needs(node, "output_step", "a number > 0 s", faults);
         if run.speed <= 0.0 {
             at(node, "speed", "a number > 0 m/s", faults);

@@ -3,7 +3,7 @@
 use crate::analysis::Stand;
 use crate::dynamics::{Model, SpeedProgram, VehicleSystem};
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{Integrator, StepEnd, Stepper, System};
+use crate::integrator::{Integrator, Stepper, System};
 use crate::run::{divergence, stability};
 use crate::schema::Case;
 
@@ -114,17 +114,8 @@ impl<'m> Roller<'m> {
             let t = self.steps as f64 * self.h;
             let end = self.stepper.step(&mut self.system, t, &mut self.x, self.h);
             self.steps += 1;
-            if let StepEnd::Singular { block } = end {
-                return Err(Error::Diverged {
-                    t: self.time(),
-                    s: self.place(),
-                    body: self.system.model.wheelsets[block].body.name.clone(),
-                    cause:
-                        "the implicit step has no solution: a number that is not finite in wheel and track"
-                            .into(),
-                });
-            }
             let time = self.time();
+            divergence::stepped(&self.system, end, time, &self.x)?;
             divergence::check(&mut self.system, time, &self.x)?;
         }
         Ok(())
