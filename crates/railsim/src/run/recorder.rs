@@ -84,6 +84,9 @@ fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &
             let [left, right] = &scratch.wheels[w];
             right.Y - left.Y
         }
+        Source::Equipment(quantity) => {
+            system.acting.as_ref().map_or(f64::NAN, |acting| acting.value(quantity, model, t, x, scratch))
+        }
     }
 }
 

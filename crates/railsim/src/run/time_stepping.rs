@@ -1,11 +1,13 @@
 //! A case in time: rolling equilibrium, fixed steps to the end of the track, one row per output step.
 
 use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, equilibrium};
+use crate::equipment::{Acting, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{StepEnd, Stepper, System};
+use crate::integrator::{Integrator, StepEnd, Stepper, System};
 use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
+use crate::schema::drive::Until;
 
 /// Room that is taken for rows before the run, at most; more is taken as it is needed.
 const MOST_ROWS_AT_ONCE: usize = 1 << 18;
@@ -88,10 +90,19 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     system.scratch.left_rail = None;
 
     let distance = case.track.length;
-    let rows = ((distance / speed / (h * every as f64)) as usize).min(MOST_ROWS_AT_ONCE) + 8;
+    let latest = latest(case);
+    let mut samples = u64::MAX;
+    if let Some(equipment) = &model.equipment {
+        samples = (equipment.drive.period / h).round().max(1.0) as u64;
+        attach(&mut system, equipment, integrator, &mut x)?;
+        dx.resize(x.len(), 0.0);
+        system.rhs(0.0, &x, &mut dx);
+    }
+    let expected = latest.min(distance / speed.max(0.1));
+    let rows = ((expected / (h * every as f64)) as usize).min(MOST_ROWS_AT_ONCE) + 8;
     let mut recorder = Recorder::new(&model, rows);
     recorder.record(&system, 0.0, &x, &dx);
-    let mut stepper = Stepper::new(integrator, map.size(), system.stiff_blocks());
+    let mut stepper = Stepper::new(integrator, x.len(), system.stiff_blocks());
     let leading = (0..map.wheelsets).map(|w| map.q(map.bodies + w).start).collect::<Vec<_>>();
     let reference = map.q(model.reference()).start;
 
@@ -99,6 +110,9 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let mut output: u64 = 0;
     let ended = 'run: loop {
         for n in 0..every {
+            if n > 0 {
+                sample(&mut system, step, samples, h, &x);
+            }
             // The slope that the last row was written from is the first of the step that follows.
             let known = (n == 0).then_some(&dx[..]);
             let end = stepper.step_from(&mut system, step as f64 * h, &mut x, h, known);
@@ -118,6 +132,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             }
         }
         let t = step as f64 * h;
+        sample(&mut system, step, samples, h, &x);
         system.rhs(t, &x, &mut dx);
         recorder.record(&system, t, &x, &dx);
         output += 1;
@@ -126,13 +141,17 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             control.progress(t, s, 1.0);
             break Ended::EndOfTrack;
         }
-        if t > LATEST * distance / speed {
+        if model.equipment.as_ref().is_some_and(|e| reached(&e.drive.until, t, dx[reference])) {
+            control.progress(t, s, 1.0);
+            break Ended::Complete;
+        }
+        if t > latest {
             break Ended::Diverged(Error::Diverged {
                 t,
                 s,
                 body: model.rigid(model.reference()).name.clone(),
                 cause: format!(
-                    "not at the end of the track in {LATEST} times the time that the speed asked for takes: nothing holds it"
+                    "not at the end of the track in {latest:.1} s, {LATEST} times what the speed asked for takes: nothing holds it"
                 ),
             });
         }
@@ -155,6 +174,68 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
         "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,
     });
     Ok(Outcome { columns: recorder.into_columns(), labels: Vec::new(), ended, statistics })
+}
+
+/// Time after which a run has failed, s.
+fn latest(case: &Case) -> f64 {
+    let take = case.track.length / case.run.speed.max(0.1);
+    match case.run.drive.as_ref().map(|drive| drive.until.time) {
+        None => LATEST * take,
+        // The end that was asked for comes first.
+        Some(Some(time)) => time + case.run.output_step,
+        Some(None) => SLOWEST * take,
+    }
+}
+
+/// A driven run may be slower than the speed that it began with, but not by more than this.
+const SLOWEST: f64 = 20.0;
+
+/// Lets the equipment act, with its numbers at the end of the state.
+fn attach<'m>(
+    system: &mut VehicleSystem<'m>,
+    equipment: &'m Equipment,
+    integrator: &Integrator,
+    x: &mut Vec<f64>,
+) -> Result<()> {
+    let model = system.model;
+    if let Some(train) = &equipment.train
+        && integrator.step() * train.fastest() > 1.0
+    {
+        return Err(Error::input(Fault::new(
+            KeyPath::of("run.integrator.step"),
+            format!(
+                "{} s, with a train whose couplings swing at {:.0} rad/s",
+                integrator.step(),
+                train.fastest()
+            ),
+            format!("at most {:.2e} s", 1.0 / train.fastest()),
+        )));
+    }
+    system.holding = equipment.drive.hold_speed;
+    system.creeping = true;
+    let mut acting = Box::new(Acting::new(model, equipment));
+    x.resize(model.map().size() + acting.states(), 0.0);
+    acting.place_train(model, x);
+    acting.sample(model, 0.0, x);
+    system.acting = Some(acting);
+    Ok(())
+}
+
+/// Lets the controllers look, every `samples` steps.
+#[inline]
+fn sample(system: &mut VehicleSystem<'_>, step: u64, samples: u64, h: f64, x: &[f64]) {
+    if step.is_multiple_of(samples)
+        && let Some(acting) = &mut system.acting
+    {
+        acting.sample(system.model, step as f64 * h, x);
+    }
+}
+
+/// Whether the end that was asked for has come, at the vehicle's speed `v`.
+fn reached(until: &Until, t: f64, v: f64) -> bool {
+    until.time.is_some_and(|end| t >= end - 1e-9)
+        || until.speed_below.is_some_and(|end| v <= end)
+        || until.speed_above.is_some_and(|end| v >= end)
 }
 
 /// Most irregularity (m) under a wheel at the start: a tenth of what the contact is pressed in by the wheel's load.
