@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lmap import files
-from lmap.errors import InputProblem, LmapError, Problem, listed, nearest_hint
-from lmap.verdict import Acceptance, CaseResult, SpecVerdict, outcome_of
+from lmap.errors import InputProblem, JudgementProblem, LmapError, Problem, listed, nearest_hint
+from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, Drawing, SpecVerdict, outcome_of
 
 if TYPE_CHECKING:
     import polars as pl
@@ -142,37 +142,20 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
     """The spec's verdict on what its cases gave."""
     import polars as pl
 
-    from lmap.criteria import judge
+    from lmap.procedures import Illustrated
 
-    spec = prepared.spec
+    spec, procedure = prepared.spec, prepared.procedure
+    results = {case.label: outcome for case, outcome in zip(prepared.cases, outcomes, strict=True)}
     frames = {
-        case.label: pl.DataFrame() if outcome.frame is None else outcome.frame
-        for case, outcome in zip(prepared.cases, outcomes, strict=True)
+        label: pl.DataFrame() if outcome.frame is None else outcome.frame
+        for label, outcome in results.items()
     }
-    quantities: Mapping[str, pl.DataFrame] = frames
-    if all(outcome.complete for outcome in outcomes):
-        quantities = prepared.procedure.quantities(spec, frames)
+    quantities, troubles = _quantities(prepared, results, frames)
     units = {name: channel.unit for name, channel in prepared.channels.items()}
-    criteria = tuple(
-        judge(
-            criterion,
-            quantities[case.label],
-            units,
-            index=index,
-            label=case.label,
-            case_hash=case.hash,
-            ended=outcome.trouble,
-        )
-        for index, criterion in enumerate(spec.criterion)
-        for case, outcome in zip(prepared.cases, outcomes, strict=True)
-    )
-    look = prepared.look
-    if look is not None:
-        criteria += tuple(
-            judge(criterion, look.frame, units, index=index, label=look.label, case_hash=look.hash)
-            for index, criterion in enumerate(spec.criterion)
-        )
-        criteria += (look.by_person,)
+    criteria = _judged(prepared, quantities, troubles, units)
+    drawings: Sequence[Drawing] = ()
+    if isinstance(procedure, Illustrated) and not troubles:
+        drawings = procedure.drawings(spec, quantities, prepared.vehicle.data)
     cases = tuple(
         CaseResult(
             label=case.label,
@@ -180,7 +163,7 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
             case=case.data,
             case_json=case.json,
             frame=frames[case.label],
-            quantities=quantities[case.label],
+            quantities=quantities.get(case.label, frames[case.label]),
             ended=outcome.ended,
             statistics=outcome.statistics,
             units=units,
@@ -189,6 +172,7 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         )
         for case, outcome in zip(prepared.cases, outcomes, strict=True)
     )
+    look = prepared.look
     return SpecVerdict(
         id=spec.id,
         title=spec.title,
@@ -203,7 +187,64 @@ def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
         inputs=prepared.inputs,
         overrides=prepared.loaded.settings,
         drawing=None if look is None else look.drawing,
+        drawings=tuple(drawings),
     )
+
+
+def _quantities(
+    prepared: Prepared, results: Mapping[str, CaseOutcome], frames: Mapping[str, pl.DataFrame]
+) -> tuple[dict[str, pl.DataFrame], dict[str, str]]:
+    """What is judged, by label, and why a label cannot be: its run ended early, or the procedure says so."""
+    troubles = {label: outcome.trouble for label, outcome in results.items() if outcome.trouble is not None}
+    complete = {label: frame for label, frame in frames.items() if label not in troubles}
+    early = {label: frames[label] for label in troubles}
+    if not complete:
+        return early, troubles
+    try:
+        made = prepared.procedure.quantities(prepared.spec, complete, prepared.vehicle.data)
+    except JudgementProblem as problem:
+        return dict(frames), {label: str(problem) for label in complete} | troubles
+    order = [*(label for label in frames if label in made or label in early), *made]
+    return {label: made[label] if label in made else early[label] for label in order}, troubles
+
+
+def _judged(
+    prepared: Prepared,
+    quantities: Mapping[str, pl.DataFrame],
+    troubles: Mapping[str, str],
+    units: Mapping[str, str],
+) -> tuple[CriterionVerdict, ...]:
+    """Every criterion in every case that it applies to."""
+    import polars as pl
+
+    from lmap.criteria import judge
+
+    look = prepared.look
+    hashes = {case.label: case.hash for case in prepared.cases}
+    judged = dict(quantities) if look is None else {look.label: look.frame}
+    if look is not None:
+        hashes = {look.label: look.hash}
+    found = []
+    for index, criterion in enumerate(prepared.spec.criterion):
+        labels = [label for label in judged if criterion.applies_to(label)]
+        for label in labels:
+            verdict = judge(
+                criterion,
+                judged[label],
+                units,
+                index=index,
+                label=label,
+                case_hash=hashes.get(label, ""),
+                ended=troubles.get(label),
+            )
+            found.append(verdict)
+        if not labels:
+            why = f"no case is called {listed(criterion.case or ())}: there are {listed(judged, 40)}"
+            why = next(iter(troubles.values()), why)
+            found.append(judge(criterion, pl.DataFrame(), units, index=index, ended=why))
+    if look is not None:
+        found.append(look.by_person)
+    return tuple(found)
 
 
 def _core() -> str:

@@ -11,7 +11,16 @@ from lmap import contact, files, procedures, toml
 from lmap.analyse import first_place, vehicle_case
 from lmap.criteria.chain import signal_problems
 from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
-from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Look, Looking, Procedure
+from lmap.procedures.base import (
+    CONICITY_AMPLITUDE,
+    CaseFigures,
+    Deriving,
+    Look,
+    Looking,
+    Procedure,
+    Set,
+)
+from lmap.procedures.base import settings as checked_settings
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
@@ -72,6 +81,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
     procedure = _procedure(loaded)
     vehicle = _vehicle(loaded)
     spec, base = _with_base_track(loaded, vehicle)
+    _check_settings(loaded, procedure)
     if isinstance(procedure, Looking):
         return _looked_at(loaded, spec, vehicle, procedure, base)
     if spec.sign_off is not None:
@@ -91,7 +101,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
     profiles, data = _profiles(cases, loaded, vehicle, base)
     cases = [case.with_profiles(data) for case in cases]
     sources = _Sources(loaded, vehicle, base, profiles)
-    known = _checked(cases, sources, procedure)
+    known = _checked(spec, cases, sources, procedure)
     _check_signals(loaded, spec, known)
     figures = [_figures(case) for case in cases]
     return Prepared(
@@ -136,6 +146,18 @@ def _procedure(loaded: LoadedSpec) -> Procedure:
             loaded.locate(Problem(key=("procedure",), found=f'"{name}"', allowed=allowed, hint=hint))
         )
     return procedure
+
+
+def _check_settings(loaded: LoadedSpec, procedure: Procedure) -> None:
+    """`[test]` against what the procedure knows."""
+    try:
+        if isinstance(procedure, Set):
+            checked_settings(loaded.spec, procedure.SETTINGS)
+        elif loaded.spec.test:
+            allowed = f"none: procedure {procedure.NAME} has no numbers of its own"
+            raise InputProblem(Problem(key=("test",), found=listed(loaded.spec.test), allowed=allowed))
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
 
 
 def _vehicle(loaded: LoadedSpec) -> Vehicle:
@@ -222,8 +244,10 @@ def _profiles(
     return found, data
 
 
-def _checked(cases: Sequence[Case], sources: _Sources, procedure: Procedure) -> dict[str, Channel]:
-    """The channels that every case gives, after the core has checked every case."""
+def _checked(
+    spec: Spec, cases: Sequence[Case], sources: _Sources, procedure: Procedure
+) -> dict[str, Channel]:
+    """The channels that any case gives and those that are derived, after the core has checked every case."""
     problems: list[Problem] = []
     for case in cases:
         try:
@@ -232,11 +256,14 @@ def _checked(cases: Sequence[Case], sources: _Sources, procedure: Procedure) -> 
             problems += [sources.locate(problem) for problem in error.problems]
     if problems:
         raise InputProblem(problems)
-    common: dict[str, Channel] = {}
-    for number, case in enumerate(cases):
-        given = {channel.name: channel for channel in channels(case)}
-        common = given if number == 0 else {name: common[name] for name in common if name in given}
-    return common | {name: Channel(name, unit, "") for name, unit in procedure.UNITS.items()}
+    known: dict[str, Channel] = {}
+    for case in cases:
+        for channel in channels(case):
+            known.setdefault(channel.name, channel)
+    added = dict(procedure.UNITS)
+    if isinstance(procedure, Deriving):
+        added |= procedure.derived(spec, {name: channel.unit for name, channel in known.items()})
+    return known | {name: Channel(name, unit, "") for name, unit in added.items()}
 
 
 def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel]) -> None:

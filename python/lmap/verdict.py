@@ -7,10 +7,10 @@ and JSON read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     import polars as pl
@@ -114,6 +114,33 @@ class Fact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DrawnCurve:
+    """One line, or a set of points, of a drawing."""
+
+    name: str
+    x: Sequence[float]
+    y: Sequence[float]
+    role: Literal["line", "limit", "points", "outline"] = "line"
+    """An `outline` is closed by itself; a `limit` is dashed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drawing:
+    """A plot of one quantity against another that is no time: a loop, an outline, a figure over speed."""
+
+    title: str
+    x_label: str
+    """With the unit: `cant (mm)`."""
+    y_label: str
+    curves: tuple[DrawnCurve, ...]
+    caption: str = ""
+    equal_axes: bool = False
+    """A metre is as long across as up."""
+    y_down: bool = False
+    """The vertical axis points down, as z does."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class InputFile:
     """A file that went into a check."""
 
@@ -171,6 +198,8 @@ class SpecVerdict:
     """What `[set]` and `--set` changed."""
     drawing: Mapping[str, Any] | None = None
     """Plain data of the vehicle's 3D page, where the procedure draws one."""
+    drawings: tuple[Drawing, ...] = ()
+    """Plots that the procedure makes of what was judged."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from lmap.cli import app
+from lmap.errors import listed
+from lmap.procedures import BY_NAME
 
 pytestmark = pytest.mark.needs_core
 ROOT = Path(__file__).parents[2]
@@ -175,5 +177,5 @@ def test_every_message_of_several_specs(messages: Callable[..., list[str]]) -> N
     found = messages("specs")
     assert [message.split(":")[1].strip() for message in found] == [SPEC, "specs/other.toml"]
     assert found[1].endswith(
-        'found "huntign"; allowed: critical_speed, hunting, lint, modes, view (did you mean "hunting"?)'
+        f'found "huntign"; allowed: {listed(sorted(BY_NAME), 40)} (did you mean "hunting"?)'
     )

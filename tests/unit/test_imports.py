@@ -17,7 +17,7 @@ PACKAGE = Path(lmap.__file__).parent
 TIERS: tuple[tuple[str, ...], ...] = (
     ("errors", "verdict", "files"),
     ("toml",),
-    ("include", "reference"),
+    ("include", "reference", "formulas"),
     ("signals",),
     ("criteria",),
     ("spec",),

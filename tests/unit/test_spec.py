@@ -45,7 +45,7 @@ def edited(old: str, new: str) -> str:
             'vehicel = "toy"',
             (
                 '4: vehicel: found an unknown key "vehicel"; allowed: condition, criterion, id, procedure, run, '
-                'set, sign_off, title, track, vehicle (did you mean "vehicle"?)'
+                'set, sign_off, test, title, track, vehicle (did you mean "vehicle"?)'
             ),
         ),
         (
@@ -72,7 +72,7 @@ def edited(old: str, new: str) -> str:
             "max_abs = 0.35",
             "max_asb = 0.35",
             (
-                '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: chain, max, max_abs, min, '
+                '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: case, chain, max, max_abs, min, '
                 'name, published, reason, signal, source, strict, unit (did you mean "max_abs"?)'
             ),
         ),

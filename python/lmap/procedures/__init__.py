@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from lmap.procedures import critical_speed, hunting, lint, modes, view
-from lmap.procedures.base import CaseFigures, Look, Looking, Procedure
+from lmap.procedures import axle_loads, critical_speed, hunting, lint, modes, p2, view
+from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (critical_speed, hunting, lint, modes, view)
+PROCEDURES: tuple[Procedure, ...] = (axle_loads, critical_speed, hunting, lint, modes, p2, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
-__all__ = ["BY_NAME", "PROCEDURES", "CaseFigures", "Look", "Looking", "Procedure"]
+__all__ = [
+    "BY_NAME",
+    "PROCEDURES",
+    "CaseFigures",
+    "Deriving",
+    "Illustrated",
+    "Look",
+    "Looking",
+    "Procedure",
+    "Set",
+]

@@ -20,7 +20,7 @@ VERDICTS = {
 }
 
 
-WHOLE_RUN = frozenset({"mean", "percentile", "rms"})
+WHOLE_RUN = frozenset({"mean", "mean_comfort", "median", "percentile", "rms", "vibration_total"})
 """Statistics of a run as a whole: their value has no place in it."""
 
 

@@ -22,7 +22,8 @@ pub struct DeviationField {
 #[derive(Debug, Clone)]
 enum Part {
     Realisation(Realisation),
-    Shape(Shape),
+    /// The wave of height 1, and what that is on the four channels.
+    Shape(Shape, [f64; 4]),
 }
 
 impl DeviationField {
@@ -61,7 +62,7 @@ impl DeviationField {
             .iter()
             .map(|irregularity| match irregularity {
                 Irregularity::Psd(psd) => Part::Realisation(Realisation::new(psd)),
-                Irregularity::Shape(shape) => Part::Shape(shape.clone()),
+                Irregularity::Shape(shape) => Part::Shape(shape.clone(), shape.weights()),
             })
             .collect();
         Ok(Self { parts, length, fade_start, fade_in })
@@ -98,10 +99,12 @@ impl DeviationField {
                         *sum += value;
                     }
                 }
-                Part::Shape(shape) => {
-                    let (channel, value, slope) = shape.at(s);
-                    sum[channel] += value;
-                    sum[channel + 4] += slope;
+                Part::Shape(shape, weights) => {
+                    let (value, slope) = shape.at(s);
+                    for (i, weight) in weights.iter().enumerate() {
+                        sum[i] += weight * value;
+                        sum[i + 4] += weight * slope;
+                    }
                 }
             }
         }

@@ -22,7 +22,7 @@ use crate::error::{Fault, KeyPath};
 
 pub use combine::DeviationField;
 pub use psd::{Form, GaugeSeries, Level, Psd, spectrum};
-pub use shape::{Shape, Wave};
+pub use shape::{Shape, ShapeChannel, Wave};
 
 /// Which of the four channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -82,7 +82,7 @@ pub struct Deviation {
 pub enum Irregularity {
     /// A realisation of a power spectral density.
     Psd(Psd),
-    /// An isolated or repeated wave of given height and length.
+    /// Waves of given height and length: humps, dips, kinks, joints, cyclic irregularities.
     Shape(Shape),
 }
 
