@@ -217,7 +217,7 @@ def _judged(
     """Every criterion in every case that it applies to."""
     import polars as pl
 
-    from lmap.criteria import judge
+    from lmap.criteria import judge, not_assessed
 
     look = prepared.look
     hashes = {case.label: case.hash for case in prepared.cases}
@@ -228,6 +228,11 @@ def _judged(
     for index, criterion in enumerate(prepared.spec.criterion):
         labels = [label for label in judged if criterion.applies_to(label)]
         for label in labels:
+            if not prepared.vehicle.data.declares(criterion.needs):
+                found.append(
+                    not_assessed(criterion, index=index, label=label, case_hash=hashes.get(label, ""))
+                )
+                continue
             verdict = judge(
                 criterion,
                 judged[label],

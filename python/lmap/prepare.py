@@ -102,7 +102,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
     cases = [case.with_profiles(data) for case in cases]
     sources = _Sources(loaded, vehicle, base, profiles)
     known = _checked(spec, cases, sources, procedure)
-    _check_signals(loaded, spec, known)
+    _check_signals(loaded, spec, known, vehicle)
     figures = [_figures(case) for case in cases]
     return Prepared(
         loaded=loaded,
@@ -122,7 +122,7 @@ def _looked_at(
     """A spec whose procedure simulates nothing."""
     look = procedure.look(spec, vehicle.data, loaded.parameters)
     known = {name: Channel(name, unit, "") for name, unit in look.units.items()}
-    _check_signals(loaded, spec, known)
+    _check_signals(loaded, spec, known, vehicle)
     return Prepared(
         loaded=loaded,
         spec=spec,
@@ -266,11 +266,12 @@ def _checked(
     return known | {name: Channel(name, unit, "") for name, unit in added.items()}
 
 
-def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel]) -> None:
+def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel], vehicle: Vehicle) -> None:
     units = {name: channel.unit for name, channel in known.items()}
     problems = [
         loaded.locate(problem.at(prefix=("criterion", index)))
         for index, criterion in enumerate(spec.criterion)
+        if vehicle.data.declares(criterion.needs)
         for problem in signal_problems(criterion, units)
     ]
     if problems:

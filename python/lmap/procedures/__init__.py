@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from lmap.procedures import axle_loads, critical_speed, hunting, lint, modes, p2, view
+from lmap.procedures import axle_loads, critical_speed, drive, hunting, lint, modes, p2, view
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (axle_loads, critical_speed, hunting, lint, modes, p2, view)
+PROCEDURES: tuple[Procedure, ...] = (axle_loads, critical_speed, drive, hunting, lint, modes, p2, view)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 

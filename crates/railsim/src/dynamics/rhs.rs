@@ -328,7 +328,12 @@ impl<'m> VehicleSystem<'m> {
             let (s, v) = self.program.at(t);
             let k = &self.scratch.kinematics[hold.body];
             let force = hold.stiffness * (s - x[self.map.q(hold.body)][0]) + hold.damping * (v - k.s_dot);
-            self.scratch.wrench[hold.body].f += k.frame.R_IT.column(0) * force;
+            let pull = k.frame.R_IT.column(0) * force;
+            // What a driven vehicle pulls against hangs on its coupler.
+            if let Some(acting) = &self.acting {
+                self.scratch.wrench[hold.body].m += (k.pose.R * acting.coupler()).cross(&pull);
+            }
+            self.scratch.wrench[hold.body].f += pull;
         }
     }
 

@@ -523,6 +523,12 @@ impl<'m> Acting<'m> {
         self.design.coupler.0
     }
 
+    /// The rear coupler from that body's centre of mass, body axes, m.
+    #[must_use]
+    pub fn coupler(&self) -> &Vec3 {
+        &self.design.coupler.1
+    }
+
     /// A recorded number, at the last evaluation.
     #[must_use]
     pub fn value(&self, quantity: Quantity, model: &Model, t: f64, x: &[f64], scratch: &Scratch) -> f64 {
