@@ -101,7 +101,7 @@ fn a_train_that_coasts_over_a_hump_keeps_its_energy() {
 #[test]
 fn steady_drawbar_force_is_weight_and_resistance() {
     let train = json!({ "wagons": 10, "mass": 90e3, "length": 15.0, "coupler": { "stiffness": 1e7, "damping": 1e6 } });
-    let grade = 1.0 / 60.0;
+    let grade: f64 = 1.0 / 60.0;
     let mut line = Line::new(train, &json!([{ "kind": "tangent", "length": 5000.0, "gradient": grade }]));
     let mut x = line.start(1000.0, 10.0);
     // What makes the whole of it keep its speed, by hand; the leading mass has no resistance of its own here.

@@ -220,19 +220,23 @@ impl<'m> VehicleSystem<'m> {
         let (Some(acting), scratch) = (&mut self.acting, &mut self.scratch) else { return };
         acting.rolls(scratch, self.model.bodies.len());
         let mut cases = scratch.creep_cases.iter_mut();
-        for (w, wheels) in scratch.wheels.iter().enumerate() {
-            for (side, wheel) in wheels.iter().enumerate() {
-                if !wheel.contacts().iter().any(|c| c.creeps) {
-                    acting.let_go(w, side, x);
-                }
-                for (n, contact) in wheel.contacts().iter().filter(|c| c.creeps).enumerate() {
+        for (w, wheels) in scratch.wheels.iter_mut().enumerate() {
+            for (side, wheel) in wheels.iter_mut().enumerate() {
+                let mut first = true;
+                for contact in wheel.contacts_mut().iter_mut().filter(|c| c.creeps) {
                     let Some(case) = cases.next() else { return };
                     case.mu *= acting.sand();
-                    if n == 0 {
+                    if first {
                         let steady = [case.creepage.xi, case.creepage.eta];
-                        let given = acting.creepage(w, side, contact.placed.slip, steady, case.patch.a, x);
+                        let known = Some((contact.placed.slip, steady, case.patch.a));
+                        let given = acting.creepage(self.model, self.map, (w, side), known, x);
                         [case.creepage.xi, case.creepage.eta] = given;
+                        contact.placed.creepage = case.creepage;
+                        first = false;
                     }
+                }
+                if first {
+                    acting.creepage(self.model, self.map, (w, side), None, x);
                 }
             }
         }
@@ -512,7 +516,8 @@ impl System for VehicleSystem<'_> {
     }
 
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
-        stiff::matrices(self.model, &self.scratch, block, k, c);
+        let sticking = self.acting.as_ref().map_or(0.0, |acting| acting.sticking(block));
+        stiff::matrices(self.model, &self.scratch, block, sticking, k, c);
     }
 }
 

@@ -10,7 +10,8 @@
 //! At rest wheels stick. Below [`STEADY`] the creepage that the creep law is asked for is the tangential deflection of the contact
 //! over its half-length a, which follows the sliding velocity w by `dz/dt = w - max(V, |w|) z/a`: rolling, that is the steady creepage w/V
 //! after rolling some a; at rest it is a spring with the slope of the creep law, so that a wheel stands on a gradient
-//! without creeping, and slides beyond the friction limit (transient rolling contact to first order: Knothe and Gross-Thebing, Vehicle
+//! without creeping, and slides beyond the friction limit. In the state stands z less the way that the coordinates of axle and track
+//! say, so that the spring is one between positions, which the implicit scheme knows (transient rolling contact to first order: Knothe and Gross-Thebing, Vehicle
 //! System Dynamics 15 (1986) 173; the relaxation length of tyre models).
 
 pub mod air_brake;
@@ -27,6 +28,7 @@ use crate::equipment::slip::{Gains, Lag, SlipController, SlipObserver, slip};
 use crate::equipment::thermal::Motor;
 use crate::equipment::train::Wagons;
 use crate::math::{Vec3, interpolate};
+use crate::run::law::Action;
 use crate::schema::drive::{Drive, Inverter};
 use crate::schema::{AirBrake, DynamicBrake, ParkingBrake, Traction};
 
@@ -34,6 +36,8 @@ use crate::schema::{AirBrake, DynamicBrake, ParkingBrake, Traction};
 pub const STEADY: f64 = 4.0;
 /// Fastest return of a contact's deflection, 1/s: explicit schemes follow it at any step here.
 const FASTEST_RETURN: f64 = 400.0;
+/// Damping of a contact's deflection over its stiffness, s: what rings at rest dies away. Rolling, it has no effect.
+pub const CONTACT_DAMPING: f64 = 5e-4;
 /// Stick stiffness of the blocks of a wheelset at the rim, N/m.
 const BLOCK_STIFFNESS: f64 = 5.0e7;
 
@@ -189,6 +193,8 @@ pub struct Acting<'m> {
     returns: Vec<f64>,
     rolling: Vec<f64>,
     sanded: f64,
+    /// Independent brake that a control law asks for, Pa.
+    asked: Option<f64>,
     drawbar: f64,
     brake_effort: f64,
 }
@@ -227,6 +233,7 @@ impl<'m> Acting<'m> {
             returns: vec![0.0; 4 * wheelsets],
             rolling: vec![0.0; wheelsets],
             sanded: 1.0,
+            asked: None,
             drawbar: 0.0,
             brake_effort: 0.0,
         };
@@ -299,7 +306,7 @@ impl<'m> Acting<'m> {
             Some(sand) if t >= sand.delay && sand.demand.at(t - sand.delay) > 0.0 => sand.friction_factor,
             _ => 1.0,
         };
-        let mut independent = drive.independent_brake.at(t);
+        let mut independent = self.asked.unwrap_or_else(|| drive.independent_brake.at(t));
         if drive.blending
             && let (Some(data), Some(brake)) = (&self.design.air_brake, &self.design.dynamic_brake)
         {
@@ -324,6 +331,19 @@ impl<'m> Acting<'m> {
             }
         }
         self.press();
+    }
+
+    /// Puts a control law's answer at time `t` over what the vehicle's own controllers have just commanded; brakes follow from the
+    /// next sample on.
+    pub fn overrule(&mut self, t: f64, action: &Action) {
+        if let Some(torques) = &action.torque {
+            for (lag, torque) in self.torques.iter_mut().zip(torques) {
+                lag.command(t, self.lag, *torque);
+            }
+        }
+        if action.independent_brake.is_some() {
+            self.asked = action.independent_brake;
+        }
     }
 
     fn heat(&mut self, model: &Model, t: f64) {
@@ -475,39 +495,68 @@ impl<'m> Acting<'m> {
         for (w, rolling) in self.rolling.iter_mut().enumerate() {
             *rolling = scratch.kinematics[bodies + w].v_T.x.abs();
         }
-        self.returns.fill(0.0);
+    }
+
+    /// Share of the contact's deflection in what the creep law is asked, by the rolling speed of wheelset `w`.
+    #[must_use]
+    pub fn sticking(&self, w: usize) -> f64 {
+        1.0 - ((2.0 * self.rolling[w] - STEADY) / STEADY).clamp(0.0, 1.0)
+    }
+
+    /// Way (m) that a wheel's tread has gone over its rail, forward and outward, as the coordinates of axle and track (or their
+    /// rates) say it: what is left out, and turns on the rail, makes the rate of the contact's memory.
+    fn way(&self, model: &Model, map: StateMap, w: usize, side: usize, x: &[f64], rates: bool) -> [f64; 2] {
+        let set = &model.wheelsets[w];
+        let sigma = if side == 0 { -1.0 } else { 1.0 };
+        let at = map.bodies + w;
+        let (q, track) =
+            if rates { (&x[map.u(at)], &x[map.track_u(w)]) } else { (&x[map.q(at)], &x[map.track_q(w)]) };
+        [
+            q[coordinate::S] + set.radius * q[coordinate::THETA]
+                - sigma * set.tape_half_distance * q[coordinate::PSI],
+            sigma * (q[coordinate::Y] - set.radius * q[coordinate::PHI] - track[0]),
+        ]
     }
 
     /// Creepage (longitudinal, lateral) of the first contact of a wheel that slides with `slip` (m/s) on a patch of half-length `a`,
-    /// given the steady one; remembers the rate of its deflection.
+    /// given the steady one; without a contact (`None`) the deflection is let go. Keeps the rate of the contact's memory.
     pub(crate) fn creepage(
         &mut self,
-        w: usize,
-        side: usize,
-        slip: [f64; 2],
-        steady: [f64; 2],
-        a: f64,
+        model: &Model,
+        map: StateMap,
+        (w, side): (usize, usize),
+        contact: Option<([f64; 2], [f64; 2], f64)>,
         x: &[f64],
     ) -> [f64; 2] {
         let at = self.deflection(w, side);
-        let v = self.rolling[w];
-        let sliding = slip[0].hypot(slip[1]);
-        let back = (v.max(sliding) / a).min(FASTEST_RETURN);
-        let share = ((2.0 * v - STEADY) / STEADY).clamp(0.0, 1.0);
+        let (way, rate) = (self.way(model, map, w, side, x, false), self.way(model, map, w, side, x, true));
+        let share = self.sticking(w);
         let mut given = [0.0; 2];
         for d in 0..2 {
-            let z = x[at + d];
-            self.returns[4 * w + 2 * side + d] = slip[d] - back * z;
-            given[d] = share * steady[d] + (1.0 - share) * z / a;
+            let z = x[at + d] + way[d];
+            let turning = match contact {
+                Some((slip, steady, a)) => {
+                    let back = (self.rolling[w].max(slip[0].hypot(slip[1])) / a).min(FASTEST_RETURN);
+                    let turning = slip[d] - back * z;
+                    given[d] = (1.0 - share) * steady[d] + share * (z + CONTACT_DAMPING * turning) / a;
+                    turning
+                }
+                None => -FASTEST_RETURN * z,
+            };
+            self.returns[4 * w + 2 * side + d] = turning - rate[d];
         }
         given
     }
 
-    /// A wheel off its rail lets its contact go.
-    pub(crate) fn let_go(&mut self, w: usize, side: usize, x: &[f64]) {
-        let at = self.deflection(w, side);
-        for d in 0..2 {
-            self.returns[4 * w + 2 * side + d] = -FASTEST_RETURN * x[at + d];
+    /// Lets every contact begin without deflection in the state `x`.
+    pub fn release(&self, model: &Model, x: &mut [f64]) {
+        let map = model.map();
+        for (w, side) in (0..self.wheelsets).flat_map(|w| [(w, 0), (w, 1)]) {
+            let way = self.way(model, map, w, side, x, false);
+            let at = self.deflection(w, side);
+            for d in 0..2 {
+                x[at + d] = -way[d];
+            }
         }
     }
 

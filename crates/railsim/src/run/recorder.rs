@@ -38,7 +38,14 @@ impl Recorder {
     }
 }
 
-fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &[f64], dx: &[f64]) -> f64 {
+pub(crate) fn value(
+    source: Source,
+    system: &VehicleSystem<'_>,
+    map: StateMap,
+    t: f64,
+    x: &[f64],
+    dx: &[f64],
+) -> f64 {
     let (model, scratch) = (system.model, &system.scratch);
     let reference = model.reference();
     match source {

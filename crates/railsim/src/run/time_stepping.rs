@@ -4,6 +4,7 @@ use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, equilibrium};
 use crate::equipment::{Acting, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::{Integrator, StepEnd, Stepper, System};
+use crate::run::law::{Outside, Watching};
 use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
@@ -66,6 +67,22 @@ pub struct Outcome {
 /// Bad input, no equilibrium, a step beyond the scheme's stability limit, an interruption. A run that diverges on the way
 /// is an [`Outcome`] that says so.
 pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
+    run(case, control, None)
+}
+
+/// The same with a control law of the user's at every sample of `run.drive.period`, after the vehicle's own controllers.
+///
+/// # Errors
+/// As [`simulate`]; a case without `run.drive`, a channel that there is not, a law that fails or answers with no number.
+pub fn simulate_controlled(case: &Case, control: &dyn Control, outside: &mut Outside<'_>) -> Result<Outcome> {
+    if case.run.drive.is_none() {
+        let allowed = "a table, an empty one at least: a control law drives";
+        return Err(Error::input(Fault::new(KeyPath::of("run.drive"), "nothing", allowed)));
+    }
+    run(case, control, Some(outside))
+}
+
+fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) -> Result<Outcome> {
     let model = compile::model(case)?;
     let integrator = &case.run.integrator;
     let h = integrator.step();
@@ -96,6 +113,15 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
         samples = (equipment.drive.period / h).round().max(1.0) as u64;
         attach(&mut system, equipment, integrator, &mut x)?;
         dx.resize(x.len(), 0.0);
+    }
+    let mut watching = match outside {
+        Some(outside) => Some(Watching::new(outside, &system)?),
+        None => None,
+    };
+    if let Some(watching) = &mut watching {
+        watching.sample(&mut system, 0.0, &x)?;
+    }
+    if model.equipment.is_some() {
         system.rhs(0.0, &x, &mut dx);
     }
     let expected = latest.min(distance / speed.max(0.1));
@@ -111,7 +137,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let ended = 'run: loop {
         for n in 0..every {
             if n > 0 {
-                sample(&mut system, step, samples, h, &x);
+                sample(&mut system, &mut watching, step, samples, h, &x)?;
             }
             // The slope that the last row was written from is the first of the step that follows.
             let known = (n == 0).then_some(&dx[..]);
@@ -132,7 +158,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             }
         }
         let t = step as f64 * h;
-        sample(&mut system, step, samples, h, &x);
+        sample(&mut system, &mut watching, step, samples, h, &x)?;
         system.rhs(t, &x, &mut dx);
         recorder.record(&system, t, &x, &dx);
         output += 1;
@@ -215,6 +241,7 @@ fn attach<'m>(
     system.creeping = true;
     let mut acting = Box::new(Acting::new(model, equipment));
     x.resize(model.map().size() + acting.states(), 0.0);
+    acting.release(model, x);
     acting.place_train(model, x);
     acting.sample(model, 0.0, x);
     system.acting = Some(acting);
@@ -223,11 +250,24 @@ fn attach<'m>(
 
 /// Lets the controllers look, every `samples` steps.
 #[inline]
-fn sample(system: &mut VehicleSystem<'_>, step: u64, samples: u64, h: f64, x: &[f64]) {
-    if step.is_multiple_of(samples)
-        && let Some(acting) = &mut system.acting
-    {
-        acting.sample(system.model, step as f64 * h, x);
+fn sample(
+    system: &mut VehicleSystem<'_>,
+    watching: &mut Option<Watching<'_, '_>>,
+    step: u64,
+    samples: u64,
+    h: f64,
+    x: &[f64],
+) -> Result<()> {
+    if !step.is_multiple_of(samples) {
+        return Ok(());
+    }
+    let t = step as f64 * h;
+    if let Some(acting) = &mut system.acting {
+        acting.sample(system.model, t, x);
+    }
+    match watching {
+        Some(watching) => watching.sample(system, t, x),
+        None => Ok(()),
     }
 }
 
