@@ -82,3 +82,17 @@ def rollover_unloading(
 ) -> float:
     """Share of the static load that the inner wheels of a rigid vehicle lose: a h/(g b)."""
     return acceleration * height / (gravity * half_base)
+
+
+def nadal_limit(flange_angle: float, friction: float) -> float:
+    """Y/Q at which a flange of an angle (rad) is on the point of climbing (Nadal 1896)."""
+    tangent = math.tan(flange_angle)
+    return (tangent - friction) / (1.0 + friction * tangent)
+
+
+def prudhomme_limit(axle_load: float, factor: float = 1.0) -> float:
+    """Lateral force of an axle (N) that track stands without shifting, K (10 kN + P0/3), from its load P0 (N).
+
+    K is 1.0 for locomotives and passenger vehicles, 0.85 for wagons (UIC 518, EN 14363).
+    """
+    return factor * (10e3 + axle_load / 3.0)

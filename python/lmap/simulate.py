@@ -65,7 +65,7 @@ def channels(case: Case) -> list[Channel]:
     """The channels that a case gives."""
     railsim = toml.core()
     try:
-        return [Channel(*channel) for channel in railsim.channels(case.json)]
+        return [Channel(*channel) for channel in railsim.channels(case.json, toml.tables())]
     except railsim.InputError as error:
         raise InputProblem(toml.problems_of_core(error)) from None
 

@@ -8,9 +8,9 @@ and JSON read.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 if TYPE_CHECKING:
     import polars as pl
@@ -145,9 +145,69 @@ class InputFile:
     """A file that went into a check."""
 
     role: str
-    """spec, vehicle, track or profile."""
+    """spec, vehicle, track, outline or profile."""
     path: str
     sha256: str
+
+
+class Frames(Protocol):
+    """Where the frames of a spec's cases are; reading them may take long and much memory."""
+
+    def frame(self, label: str) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+
+    def quantities(self, label: str) -> pl.DataFrame:
+        """What the criteria judged."""
+
+    def held(self) -> Mapping[str, Held]:
+        """All of them, read once, by label."""
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Frames of one case, in memory."""
+
+    recorded: pl.DataFrame
+    judged: pl.DataFrame
+
+    def frame(self, label: str) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+        return self.recorded
+
+    def quantities(self, label: str) -> pl.DataFrame:
+        """What the criteria judged."""
+        return self.judged
+
+    def held(self) -> Mapping[str, Held]:
+        """Nothing to read."""
+        return {}
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much a run recorded."""
+
+    rows: int
+    simulated: float | None
+    """s, from the first to the last row; none without a column `t`."""
+    distance: float | None
+    """m."""
+
+    @staticmethod
+    def of(frame: pl.DataFrame) -> Extent:
+        """Read off a frame."""
+        return Extent(frame.height, _span(frame, "t"), _span(frame, "s"))
+
+
+NO_EXTENT = Extent(0, None, None)
+
+
+def _span(frame: pl.DataFrame, name: str) -> float | None:
+    """From the first to the last value of a column; none where there is none."""
+    if name not in frame.columns or frame.height == 0:
+        return None
+    first, last = frame.get_column(name)[0], frame.get_column(name)[-1]
+    return None if first is None or last is None else float(last) - float(first)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,10 +221,8 @@ class CaseResult:
     """The case as handed to the core."""
     case_json: str
     """The very text whose hash is `hash`."""
-    frame: pl.DataFrame
-    """Channels as the core recorded them."""
-    quantities: pl.DataFrame
-    """What the criteria judged: the frame, or what the procedure computed from it. Plot from this one."""
+    frames: Frames
+    """Where its frames are: in memory, or on disk until somebody asks."""
     ended: Mapping[str, Any]
     """How the run ended: `kind` (`end_of_track`, `complete` or `diverged`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any]
@@ -172,6 +230,23 @@ class CaseResult:
     """Unit by column of `quantities`."""
     meanings: Mapping[str, str]
     wall_s: float
+    known_extent: Extent | None = None
+    """Of the frame, where it is known without reading it."""
+
+    @property
+    def frame(self) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+        return self.frames.frame(self.label)
+
+    @property
+    def quantities(self) -> pl.DataFrame:
+        """What the criteria judged: the frame, or what the procedure computed from it. Plot from this one."""
+        return self.frames.quantities(self.label)
+
+    @property
+    def extent(self) -> Extent:
+        """How much the run recorded."""
+        return Extent.of(self.frame) if self.known_extent is None else self.known_extent
 
     @property
     def complete(self) -> bool:
@@ -200,6 +275,19 @@ class SpecVerdict:
     """Plain data of the vehicle's 3D page, where the procedure draws one."""
     drawings: tuple[Drawing, ...] = ()
     """Plots that the procedure makes of what was judged."""
+
+    def held(self) -> SpecVerdict:
+        """The same with the frames of its cases in memory, each read once: for as long as they are plotted."""
+        read: dict[int, Mapping[str, Held]] = {}
+        cases = []
+        for case in self.cases:
+            if isinstance(case.frames, Held):
+                cases.append(case)
+                continue
+            if id(case.frames) not in read:
+                read[id(case.frames)] = case.frames.held()
+            cases.append(replace(case, frames=read[id(case.frames)][case.label]))
+        return replace(self, cases=tuple(cases))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -44,7 +44,18 @@ def lmap(toy: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.Monke
     return run
 
 
-@pytest.mark.parametrize("command", [[], ["check"], ["list"], ["run"], ["channels"]])
+def test_cache_shows_and_clears(lmap: Callable[..., Ran]) -> None:
+    assert "\n0 cases, 0.00 MB of 10 GB\n" in lmap("cache").out
+    lmap("check", "sway")
+    assert "\n2 cases, " in lmap("cache").out
+    assert "removed: 2 cases" in lmap("cache", "--clear").out
+    assert "running 2 cases" in lmap("check", "sway").err
+    lmap("cache", "--clear")
+    lmap("check", "sway", "--no-cache")
+    assert "\n0 cases" in lmap("cache").out
+
+
+@pytest.mark.parametrize("command", [[], ["cache"], ["check"], ["list"], ["run"], ["channels"], ["sweep"]])
 def test_every_help_shows_an_example(lmap: Callable[..., Ran], command: list[str]) -> None:
     ran = lmap(*command, "--help")
     assert ran.code == 0
@@ -284,6 +295,30 @@ def test_ctrl_c_stops_long_before_the_end_and_leaves_nothing(toy: Path) -> None:
         code = process.wait(timeout=20)  # of 60 s; a loaded machine takes its time
         assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
     assert sorted(toy.rglob("*")) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_a_check_that_was_killed_goes_on_where_it_was(toy: Path) -> None:
+    source = str(Path(importlib.util.find_spec("lmap").origin).parent.parent)  # type: ignore[union-attr, arg-type]
+    environment = {**os.environ, "PYTHONPATH": source}
+
+    def command(slow: str) -> list[str]:
+        return [sys.executable, str(FAKE), "--slow", slow, "check", "sway"]
+
+    # the stand-in runs one case after the other: the first is done after 2 s, the second would be after 4
+    with subprocess.Popen(
+        command("2"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    ) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            if ": done" in line:
+                process.kill()
+                break
+    again = subprocess.run(command("0"), capture_output=True, text=True, env=environment, check=False)
+    assert again.returncode == 0
+    assert again.stderr.startswith("running 1 case on 1 thread, 1 known from before\n")
+    third = subprocess.run(command("60"), capture_output=True, text=True, env=environment, check=False)
+    assert (third.returncode, third.stdout, third.stderr) == (0, again.stdout, "")
 
 
 def test_a_fault_of_ours_does_not_look_like_a_criterion_that_fails(

@@ -161,7 +161,11 @@ def check_case(case_json: str) -> None:
         raise InputError(faults)
 
 
-def channels(case_json: str) -> list[tuple[str, str, str]]:
+class Tables:
+    pass
+
+
+def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, str, str]]:
     found = [("t", "s", "time"), ("s", "m", "distance along the track"), ("v", "m/s", "speed")]
     for pivot in ("lead_pivot", "trail_pivot"):
         found += [
@@ -188,7 +192,7 @@ def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
     }
 
 
-def equivalent_conicity(case_json: str, amplitude: float) -> float:
+def equivalent_conicity(case_json: str, amplitude: float, tables: Tables | None = None) -> float:
     return 0.15
 
 
@@ -256,6 +260,7 @@ def run_cases(
     jobs: int,
     on_progress: Callable[[int, float, float, float], None],
     on_done: Callable[[int, Any], None],
+    tables: Tables | None = None,
 ) -> None:
     # last first: results must find their own place
     for index in reversed(range(len(cases))):

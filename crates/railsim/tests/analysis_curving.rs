@@ -391,3 +391,61 @@ fn friction_shows_its_hysteresis_along_the_path() {
     // Beside it the springs: 8 x 1.5e5, pivots 2 x 4e6 N/m.
     compare("springs, N", force[10] - 8e3, 0.02 * (8.0 * 1.5e5 + 2.0 * 4e6), 0.01);
 }
+
+/// A vehicle in the middle of a vertical curve: every mass m at height h is held on a circle of radius R + h (crest) or R - h
+/// (sag), so the rails carry m (g -+ (V/R)^2 (R +- h)).
+#[test]
+fn a_vehicle_on_a_vertical_curve_feels_v2_over_r() {
+    let (g, speed) = (9.80665, 20.0);
+    for (passage, radius) in [("clothoid", 500.0_f64), ("clothoid", -500.0), ("clothoid", 2000.0)] {
+        // Level in the middle: as much down after it as up before. A linear passage of the gradient angle is an arc.
+        let gradient = radius.signum() * 0.02;
+        let length = (radius * 2.0 * gradient.atan()).abs();
+        let mut value = box_vehicle(1000.0);
+        value["track"]["length"] = json!(200.0 + length);
+        value["track"]["layout"] = json!([
+            { "kind": "tangent", "length": 100.0, "gradient": gradient },
+            { "kind": passage, "length": length },
+            { "kind": "tangent", "length": 100.0, "gradient": -gradient }
+        ]);
+        value["run"] = json!({
+            "kind": "equilibrium", "speed": speed, "friction": 0.4, "place": 100.0 + 0.5 * length
+        });
+        let outcome = run(&common::case(&value), &Free).unwrap();
+        let at = |name: &str| row(&outcome, name, 0);
+        let load: f64 =
+            [1, 2].iter().flat_map(|w| ["left", "right"].map(|s| at(&format!("ws{w}.{s}.Q")))).sum();
+        let theirs: f64 = [("carbody", 30_000.0), ("ws1", 1500.0), ("ws2", 1500.0)]
+            .iter()
+            .map(|(body, mass)| {
+                let height = -at(&format!("{body}.z"));
+                mass * (g - (speed / radius).powi(2) * (radius + height))
+            })
+            .sum();
+        let weight = 33_000.0 * g;
+        println!("R {radius} m: {:.0} N of {weight:.0} N", load);
+        compare("change of load by the vertical curve, N", load - weight, theirs - weight, 5e-3);
+    }
+}
+
+/// Widened by the layout or by the track's own gauge: the same track.
+#[test]
+fn a_gauge_widened_by_the_layout_is_the_wider_gauge() {
+    let balance = |gauge: f64, widening: f64| {
+        let mut value = common::coco134();
+        value["track"]["gauge"] = json!(gauge);
+        value["track"]["layout"] =
+            json!([{ "kind": "curve", "length": 200.0, "radius": 400.0, "widening_mm": widening }]);
+        value["run"] = json!({ "kind": "equilibrium", "speed": 15.0, "friction": 0.4 });
+        let outcome = run(&common::case(&value), &Free).unwrap();
+        ["ws1.y", "ws1.left.Y", "ws1.right.Y", "ws3.y"].map(|name| row(&outcome, name, 0))
+    };
+    let (plain, wide, own) = (balance(1.435, 0.0), balance(1.435, 8.0), balance(1.443, 0.0));
+    println!("1435 mm {plain:?}, widened by 8 mm {wide:?}, 1443 mm {own:?}");
+    // The leading axle runs 4 mm further out to its rail.
+    assert!((wide[0] - plain[0]).abs() > 3e-3);
+    for (a, b) in wide.iter().zip(own) {
+        // Two tables, each 0.1 mm from node to node, built about different places.
+        assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+    }
+}

@@ -69,7 +69,7 @@ class Criterion(BaseModel):
     signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
     case: Annotated[list[str] | None, BeforeValidator(_listed_names)] = Field(default=None, min_length=1)
-    """Labels, or patterns of them, of the cases that it is judged in; without it, all."""
+    """Labels, or patterns of them, of the cases that it is judged in, all without it; `!` before one leaves out."""
     needs: str | None = None
     """Dotted key of the vehicle's file without which there are no data to judge: then it is not assessed."""
     unit: str
@@ -95,7 +95,14 @@ class Criterion(BaseModel):
 
     def applies_to(self, label: str) -> bool:
         """Whether it is judged in the case of this label."""
-        return self.case is None or any(fnmatch.fnmatchcase(label, pattern) for pattern in self.case)
+        named = self.case or []
+        wanted = [pattern for pattern in named if not pattern.startswith("!")]
+        unwanted = [pattern[1:] for pattern in named if pattern.startswith("!")]
+
+        def any_of(patterns: list[str]) -> bool:
+            return any(fnmatch.fnmatchcase(label, pattern) for pattern in patterns)
+
+        return (not wanted or any_of(wanted)) and not any_of(unwanted)
 
     @property
     def bounds(self) -> tuple[float, ...]:

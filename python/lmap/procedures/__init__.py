@@ -2,11 +2,47 @@
 
 from __future__ import annotations
 
-from lmap.procedures import axle_loads, critical_speed, drive, hunting, lint, modes, p2, view
+from lmap.procedures import (
+    axle_loads,
+    bogie_rotation,
+    coupler_forces,
+    critical_speed,
+    curves,
+    drive,
+    heights,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    speed_range,
+    step,
+    sway,
+    twist,
+    view,
+)
 from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (axle_loads, critical_speed, drive, hunting, lint, modes, p2, view)
+PROCEDURES: tuple[Procedure, ...] = (
+    axle_loads,
+    bogie_rotation,
+    coupler_forces,
+    critical_speed,
+    curves,
+    drive,
+    heights,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    speed_range,
+    step,
+    sway,
+    twist,
+    view,
+)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 

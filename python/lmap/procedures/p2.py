@@ -1,8 +1,10 @@
-"""P2 force by formula (LMAP 2B.2): what a wheel does to a dipped joint or weld at speed.
+"""P2 force (LMAP 2B.2): what a wheel does to a dipped joint or weld at speed.
 
-One balance at rest for each speed and wheel profile gives the static load of every wheel; the formula (Jenkins et al.
-1974, `lmap.formulas.p2_force`) adds the rest, with half of each wheelset's mass as unsprung mass and what `[test]` says
-of the track. Added: `<axle>.<side>.P2`.
+By formula: one balance at rest for each speed and wheel profile gives the static load of every wheel; Jenkins et al.
+(1974, `lmap.formulas.p2_force`) add the rest, with half of each wheelset's mass as unsprung mass and what `[test]`
+says of
+the track. By a run, where `[run]` has an integrator: over the weld that the spec lays on its track; the formula is then
+taken on the wheel loads of the run's first row, beside it. Added: `<axle>.<side>.P2`, the formula's.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 NAME = "p2"
-SUMMARY = "P2 force over a dipped weld by formula, from the standing vehicle"
+SUMMARY = "P2 force over a dipped weld, by formula from the standing vehicle, or by a run"
 UNITS: Mapping[str, str] = {}
 
 
@@ -49,8 +51,10 @@ SETTINGS = Settings
 
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
-    """The standing vehicle, once for each speed and wheel profile."""
+    """A run, or the standing vehicle, for each speed and wheel profile."""
     rolling = expand(spec, vehicle)
+    if "integrator" in spec.run.rest:
+        return rolling
     return [
         build(
             label=case.label,
@@ -70,7 +74,7 @@ def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
 def quantities(
     spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
 ) -> Mapping[str, pl.DataFrame]:
-    """The standing vehicle's frame with P2 of each wheel."""
+    """The frames with P2 of each wheel by the formula."""
     import polars as pl
 
     test = settings(spec, Settings)
@@ -95,7 +99,7 @@ def quantities(
                     track_stiffness=test.track_stiffness,
                     track_damping=test.track_damping,
                 )
-                added.append((pl.col(f"{name}.{side}.Q") + dynamic).alias(f"{name}.{side}.P2"))
+                added.append((pl.col(f"{name}.{side}.Q").first() + dynamic).alias(f"{name}.{side}.P2"))
         found[label] = frame.with_columns(added)
     return found
 

@@ -4,7 +4,6 @@
 //! All but time stepping are of the design track: irregularities are refused.
 
 mod air_brake;
-pub mod coordinate;
 pub mod critical_speed;
 pub mod modal;
 mod naming;

@@ -1,6 +1,6 @@
 //! A vehicle at its place on the design track, brought to balance there.
 
-use crate::analysis::coordinate;
+use crate::dynamics::coordinate;
 use crate::dynamics::equilibrium::{self, Conditions};
 use crate::dynamics::{Model, VehicleSystem, compile};
 use crate::error::{Error, Fault, KeyPath, Result};

@@ -1,13 +1,15 @@
 //! A case, as written, becomes a [`Model`]: names turn into indices, points into levers, preloads are solved, wheel and
 //! rail profiles into a geometry table. After this nobody looks at the document.
 
+use std::sync::Arc;
+
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Mount};
 use crate::contact::friction::FrictionField;
-use crate::contact::geometry_table::{GeometryTable, Placement};
+use crate::contact::geometry_table::{GeometryTable, Pair, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
-use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
+use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::equipment::train::Wagons;
 use crate::equipment::{Bogie, Equipment};
@@ -69,6 +71,7 @@ pub fn model(case: &Case) -> Result<Model> {
         case.run.gravity,
     )?;
     model.guided = guided(vehicle);
+    model.gaps = gaps(vehicle)?;
     model.equipment = equipment(case, &model)?.map(Box::new);
     Ok(model)
 }
@@ -178,18 +181,43 @@ fn bogies(model: &Model) -> Result<Vec<Bogie>> {
     Ok(bogies)
 }
 
+fn gaps(vehicle: &Vehicle) -> Result<Vec<Gap>> {
+    vehicle
+        .gaps
+        .iter()
+        .map(|gap| {
+            let [from, to] = gap.points.map(Vec3::from);
+            let a = index(vehicle, &gap.between[0], &gap.key)?;
+            let b = index(vehicle, &gap.between[1], &gap.key)?;
+            Ok(Gap {
+                name: gap.name.clone(),
+                bodies: [a, b],
+                points: [from - position(vehicle, a), to - position(vehicle, b)],
+                direction: (to - from).normalize(),
+            })
+        })
+        .collect()
+}
+
 /// Bodies that are led along the track, by index.
 fn guided(vehicle: &Vehicle) -> Vec<usize> {
     vehicle.bodies.iter().enumerate().filter(|(_, b)| b.guided).map(|(i, _)| i).collect()
 }
 
-/// Geometry table of the case's wheel on its rail, without the rest of the model.
+/// Geometry table of the case's wheel on its rail, without the rest of the model; out of [`Case::tables`] where it has been
+/// built before.
 ///
 /// # Errors
 /// Faults in the profiles.
-pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
-    let (wheel, rail, placement) = contact_pair(case)?;
-    GeometryTable::build(&wheel, &rail, &placement)
+pub fn geometry_table(case: &Case) -> Result<Arc<GeometryTable>> {
+    let placement = placement(case)?;
+    let wheel = points(case, &case.run.wheel_profile)?.to_vec();
+    let rail = points(case, &case.track.rail_profile)?.to_vec();
+    let pair = Pair { wheel, rail, placement };
+    case.tables.get(pair, || {
+        let (wheel, rail, placement) = contact_pair(case)?;
+        GeometryTable::build(&wheel, &rail, &placement)
+    })
 }
 
 /// The same pair for direct search ([`Side`]).
@@ -202,6 +230,13 @@ pub fn side(case: &Case) -> Result<Side> {
 }
 
 fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
+    let placement = placement(case)?;
+    let wheel = profile(case, &case.run.wheel_profile, ProfileKind::Wheel)?;
+    let rail = profile(case, &case.track.rail_profile, ProfileKind::Rail)?;
+    Ok((wheel, rail, placement))
+}
+
+fn placement(case: &Case) -> Result<Placement> {
     let radius = case.vehicle.wheelsets.first();
     let Some(set) = radius else {
         return Err(Error::input(Fault::new(
@@ -222,9 +257,7 @@ fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
             format!("the same as the first wheelset's, {} m and {} m", set.radius, set.tape_half_distance),
         )));
     }
-    let wheel = profile(case, &case.run.wheel_profile, ProfileKind::Wheel)?;
-    let rail = profile(case, &case.track.rail_profile, ProfileKind::Rail)?;
-    let placement = Placement {
+    Ok(Placement {
         gauge: case.track.gauge,
         gauge_point_depth: case.track.gauge_point_depth,
         rail_inclination: case.track.rail_inclination,
@@ -232,16 +265,22 @@ fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
         wheel_radius: set.radius,
         youngs_modulus: case.vehicle.contact.youngs_modulus,
         poisson: case.vehicle.contact.poisson,
-    };
-    Ok((wheel, rail, placement))
+    })
 }
 
 fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
-    let at = KeyPath::of("profiles").key(name).key("points");
-    let Some(data) = case.profiles.get(name) else {
-        return Err(Error::input(Fault::new(at, "nothing", "the points of the profile")));
-    };
-    Profile::new(&data.points, kind, &at)
+    Profile::new(points(case, name)?, kind, &points_key(name))
+}
+
+fn points<'a>(case: &'a Case, name: &str) -> Result<&'a [[f64; 2]]> {
+    match case.profiles.get(name) {
+        Some(data) => Ok(&data.points),
+        None => Err(Error::input(Fault::new(points_key(name), "nothing", "the points of the profile"))),
+    }
+}
+
+fn points_key(name: &str) -> KeyPath {
+    KeyPath::of("profiles").key(name).key("points")
 }
 
 fn contact(case: &Case) -> Result<Contact> {
@@ -252,7 +291,7 @@ fn contact(case: &Case) -> Result<Contact> {
     let mass = case.vehicle.mass();
     let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
     Ok(Contact::Profiles {
-        table: Box::new(geometry_table(case)?),
+        table: geometry_table(case)?,
         law: case.run.creep.with_poisson(settings.poisson),
         shear_modulus: settings.youngs_modulus / (2.0 * (1.0 + settings.poisson)),
         dissipation: if wheel_load > 0.0 { settings.damping / wheel_load } else { 0.0 },

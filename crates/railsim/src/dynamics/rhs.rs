@@ -169,7 +169,10 @@ impl<'m> VehicleSystem<'m> {
         let scratch = &mut self.scratch;
         let q = &x[self.map.q(at)];
         let k = &scratch.kinematics[at];
-        let deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+        let mut deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+        let (widening, slope) = self.model.layout.widening(q[0]);
+        deviation.gauge += widening;
+        deviation.dgauge_ds += slope;
         scratch.deviation[w] = deviation;
         let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
         let axle = Axle {
@@ -518,6 +521,10 @@ impl System for VehicleSystem<'_> {
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
         let sticking = self.acting.as_ref().map_or(0.0, |acting| acting.sticking(block));
         stiff::matrices(self.model, &self.scratch, block, sticking, k, c);
+    }
+
+    fn reject(&mut self) {
+        self.scratch.left_rail = None;
     }
 }
 
