@@ -184,7 +184,9 @@ def test_a_parking_brake_holds_up_to_its_friction(force: float, holds: bool, com
     if holds:
         later = frame.filter(frame["t"] >= 10.0)["s"]
         crept = float(later.max() - later.min())  # type: ignore[operator, arg-type]
-        compare(f"creep in 10 s of a parked vehicle, {force:.3g} N of blocks, m", crept, 0.0, 1e-5, "it stands")
+        compare(
+            f"creep in 10 s of a parked vehicle, {force:.3g} N of blocks, m", crept, 0.0, 1e-5, "it stands"
+        )
         need = 134e3 * G * math.sin(math.atan(1.0 / 30.0))
         compare("brake force at rest, N", float(frame["brake.effort"][-1]), need, 0.01 * need, "m g sin")
     else:
