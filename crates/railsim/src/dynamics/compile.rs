@@ -80,7 +80,19 @@ fn guided(vehicle: &Vehicle) -> Vec<usize> {
 /// Faults in the profiles.
 pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
     let (wheel, rail, placement) = contact_pair(case)?;
-    GeometryTable::build(&wheel, &rail, &placement)
+    let load = wheel_load(case);
+    let mut penetration = placement.penetration_under(load);
+    if let Ok(v) = std::env::var("LMAP_LAB_PEN") {
+        if let Ok(v) = v.parse::<f64>() {
+            penetration = v;
+        }
+    }
+    GeometryTable::build_at(&wheel, &rail, &placement, penetration)
+}
+
+/// Mean static load of a wheel, N.
+fn wheel_load(case: &Case) -> f64 {
+    case.vehicle.mass() * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64)
 }
 
 /// The same pair for direct search ([`Side`]).
@@ -140,8 +152,7 @@ fn contact(case: &Case) -> Result<Contact> {
         return Ok(Contact::Textbook(*book));
     }
     let settings = &case.vehicle.contact;
-    let mass = case.vehicle.mass();
-    let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
+    let wheel_load = wheel_load(case);
     Ok(Contact::Profiles {
         table: Box::new(geometry_table(case)?),
         law: case.run.creep.with_poisson(settings.poisson),

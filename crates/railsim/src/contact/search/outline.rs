@@ -16,7 +16,11 @@ pub(super) struct Outline {
 }
 
 impl Side {
-    pub(super) fn outline(&self, pose: &Pose, rail: &RailShift) -> std::result::Result<Vec<Outline>, NoContact> {
+    pub(super) fn outline(
+        &self,
+        pose: &Pose,
+        rail: &RailShift,
+    ) -> std::result::Result<Vec<Outline>, NoContact> {
         let near = |x: f64| x.abs() <= 0.5;
         let all = [pose.y, pose.z, pose.roll, pose.yaw, rail.y, rail.z, rail.roll];
         if !all.into_iter().all(near) {
@@ -48,7 +52,13 @@ impl Side {
     }
 
     /// Curvatures of the wheel in the contact plane (convex positive), along x, mixed, across.
-    pub(super) fn wheel_curvature(&self, pose: &Pose, direction: f64, curvature: f64, z: f64) -> (f64, f64, f64) {
+    pub(super) fn wheel_curvature(
+        &self,
+        pose: &Pose,
+        direction: f64,
+        curvature: f64,
+        z: f64,
+    ) -> (f64, f64, f64) {
         let meridian = -curvature;
         let around = direction.cos() / (self.placement.wheel_radius + z);
         // x-component of the meridian's tangent
