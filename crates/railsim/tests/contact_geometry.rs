@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use railsim::KeyPath;
 use railsim::contact::geometry_table::{
-    ContactPoint, GeometryTable, MAX_CONTACTS, OutOfTable, PENETRATION, Placement,
+    ContactPoint, GeometryTable, MAX_CONTACTS, OutOfTable, PENETRATION, Placement, Zone,
 };
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use railsim::contact::search::{Pose, RailShift, Side, VIRTUAL};
@@ -238,45 +238,48 @@ fn zones_are_cut_where_a_pair_touches_twice_in_them() {
     }
 }
 
-/// S1002 on 1:20, where two places of the tread and the flange root carry at once: three contacts, each where direct search has its patch,
-/// with nearly its load.
+/// S1002 on 1:20, where two places of the tread and the flange root carry at once: three contacts where direct search has three patches. The
+/// averages are over one interpenetration, so what hardly touches is averaged too widely: the heaviest patch is to be met, and the load of all.
 #[test]
 fn three_contacts_at_once() {
     let side = Side::new(&shipped("s1002", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap();
     let approach = PENETRATION / VIRTUAL;
-    let mut most = 0;
+    let load = |c: &ContactPoint| c.share * c.hertz * (c.penetration * c.angle.cos()).powf(1.5);
+    let mut threes = 0;
     for i in 0..=60 {
-        let y = 0.005 + 1e-4 * f64::from(i);
+        let y = 0.005 + 5e-5 * f64::from(i);
         let pose = Pose { y, ..Pose::default() };
-        let Ok(gap) = side.gap(&pose, &RailShift::default()) else { continue };
+        let gap = side.gap(&pose, &RailShift::default()).unwrap();
         let patches = side.patches(&Pose { z: gap + approach, ..pose }, &RailShift::default()).unwrap();
-        let mut out = [ContactPoint::default(); MAX_CONTACTS];
-        let n = S1002.contacts(y, 0.0, gap + approach, 0.0, &mut out).unwrap();
-        let carrying: Vec<_> = out[..n].iter().filter(|c| c.share > 0.1).collect();
-        most = most.max(patches.len().min(carrying.len()));
         if patches.len() < 3 {
             continue;
         }
-        println!("y = {:.1} mm", 1e3 * y);
-        for patch in &patches {
-            let near = carrying
-                .iter()
-                .map(|c| 1e3 * (c.y_wheel - patch.centre.wheel[0]).abs())
-                .fold(f64::INFINITY, f64::min);
-            let at: Vec<_> =
-                carrying.iter().filter(|c| (c.y_wheel - patch.centre.wheel[0]).abs() < 3e-3).collect();
-            let load: f64 =
-                at.iter().map(|c| c.share * c.hertz * (c.penetration * c.angle.cos()).powf(1.5)).sum();
-            println!(
-                "    patch at {:6.2} mm: table {near:.2} mm off, {:5.1} kN (search {:5.1})",
-                1e3 * patch.centre.wheel[0],
-                1e-3 * load,
-                1e-3 * patch.normal
-            );
-            assert!(near < 3.0 && (load / patch.normal - 1.0).abs() < 0.35, "at {y}");
+        let mut out = [ContactPoint::default(); MAX_CONTACTS];
+        let n = S1002.contacts(y, 0.0, gap + approach, 0.0, &mut out).unwrap();
+        println!("y = {:.2} mm: search, table", 1e3 * y);
+        for p in &patches {
+            println!("    {:6.2} mm {:5.1} kN", 1e3 * p.centre.wheel[0], 1e-3 * p.normal);
         }
+        for c in &out[..n] {
+            println!(
+                "        {:6.2} mm {:5.1} kN {:?} share {:.2}",
+                1e3 * c.y_wheel,
+                1e-3 * load(c),
+                c.zone,
+                c.share
+            );
+        }
+        let heaviest = patches.iter().max_by(|p, q| p.normal.total_cmp(&q.normal)).unwrap();
+        let main = out[..n].iter().max_by(|p, q| load(p).total_cmp(&load(q))).unwrap();
+        assert!((main.y_wheel - heaviest.centre.wheel[0]).abs() < 1.5e-3);
+        assert!((load(main) / heaviest.normal - 1.0).abs() < 0.2);
+        let total: f64 = out[..n].iter().map(load).sum();
+        let theirs: f64 = patches.iter().map(|p| p.normal).sum();
+        assert!((total / theirs - 1.0).abs() < 0.2, "{total} N, search {theirs}");
+        assert!(n >= 3);
+        threes += 1;
     }
-    assert_eq!(most, 3);
+    assert!(threes > 0);
 }
 
 #[test]

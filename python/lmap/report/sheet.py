@@ -64,6 +64,8 @@ class Plot:
     y_range: tuple[float, float] | None = None
     equal: bool = False
     """One length on both axes."""
+    log: bool = False
+    """Both axes logarithmic."""
     height: int = 340
     notes: Sequence[Note] = ()
 
@@ -142,6 +144,8 @@ def _plotly(plot: Plot) -> dict[str, Any]:
         x["range"] = list(plot.x_range)
     if plot.y_range is not None:
         y["range"] = list(plot.y_range)
+    if plot.log:
+        x["type"] = y["type"] = "log"
     if plot.equal:
         y |= {"scaleanchor": "x", "scaleratio": 1}
     notes = [

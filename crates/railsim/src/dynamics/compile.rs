@@ -74,19 +74,13 @@ fn guided(vehicle: &Vehicle) -> Vec<usize> {
     vehicle.bodies.iter().enumerate().filter(|(_, b)| b.guided).map(|(i, _)| i).collect()
 }
 
-/// Geometry table of the case's wheel on its rail, without the rest of the model.
+/// Geometry table of the case's wheel on its rail, without the rest of the model; averaged over the patch under the mean static wheel load.
 ///
 /// # Errors
 /// Faults in the profiles.
 pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
     let (wheel, rail, placement) = contact_pair(case)?;
-    let load = wheel_load(case);
-    let mut penetration = placement.penetration_under(load);
-    if let Ok(v) = std::env::var("LMAP_LAB_PEN") {
-        if let Ok(v) = v.parse::<f64>() {
-            penetration = v;
-        }
-    }
+    let penetration = placement.penetration_under(wheel_load(case));
     GeometryTable::build_at(&wheel, &rail, &placement, penetration)
 }
 

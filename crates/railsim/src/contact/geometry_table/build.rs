@@ -55,14 +55,14 @@ impl Support {
         self.chi[k] > 0.0
     }
 
-    /// The part outside a seam and that inside it, sharing what lies within.
-    fn cut(&self, seam: &Range<usize>) -> [Self; 2] {
+    /// The part outside a seam and that inside it, sharing what lies within; and the stations that each has for itself.
+    fn cut(&self, seam: &Range<usize>) -> [(Self, Range<usize>); 2] {
         let width = (seam.end - seam.start) as f64;
         let outer = |k: usize| smoothstep((k as f64 - seam.start as f64) / width);
         let weighted = |weight: &dyn Fn(usize) -> f64| {
             Self::new(self.chi.iter().enumerate().map(|(k, chi)| chi * weight(k)).collect())
         };
-        [weighted(&outer), weighted(&|k| 1.0 - outer(k))]
+        [(weighted(&outer), seam.end..self.chi.len()), (weighted(&|k| 1.0 - outer(k)), 0..seam.start + 1)]
     }
 }
 
@@ -117,9 +117,14 @@ impl GeometryTable {
         let stations = wheel_stations(wheel);
         let supports = zones(wheel);
         let mut seams = [Seams::new(stations.len()), Seams::new(stations.len())];
-        let scene = Scene { rail: &self.rail, stations: &stations, penetration, placement: &self.placement };
+        let rail = self.rail.clone();
+        let scene =
+            Scene { rail: &rail, stations: &stations, penetration, placement: &self.placement.clone() };
+        // of the patch whose averages these are; the stations at hand reach no further
+        let approach = (penetration / VIRTUAL).min(penetration + SLACK);
         let mut scratch = Scratch::default();
         let mut near: [Vec<(usize, f64)>; 2] = Default::default();
+        let mut extents: [Vec<Range<usize>>; 2] = Default::default();
         scene.nodes(self.rail_origin_y, wheel, |turned, offset| {
             scene.look(turned, offset, 0..stations.len(), &mut scratch);
             let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
@@ -134,21 +139,38 @@ impl GeometryTable {
                     }
                 }
                 self.values[zone].push(values);
+                extents[zone].push(extent(turned, &near[zone], gaps.gap[zone], penetration));
             }
             let least = gaps.gap[0].min(gaps.gap[1]);
-            for zone in (0..2).filter(|&z| gaps.gap[z] - least < penetration / VIRTUAL) {
-                seams[zone].note(turned, &supports[zone].chi, &near[zone], gaps.gap[zone], penetration);
+            for zone in (0..2).filter(|&z| gaps.gap[z] - least < approach) {
+                seams[zone].note(turned, &supports[zone].chi, &near[zone], gaps.gap[zone], approach);
             }
             self.gaps.push(gaps);
         });
         for zone in 0..2 {
             if let Some(seam) = seams[zone].seam() {
-                let parts = supports[zone].cut(&seam);
-                self.split[zone] = Some(Box::new(
-                    parts.map(|part| scene.part(self.rail_origin_y, wheel, &part, &mut scratch)),
-                ));
+                let whole =
+                    |n: usize| ([self.gaps[n].gap[zone], self.gaps[n].yaw[zone]], self.values[zone][n]);
+                let parts = supports[zone].cut(&seam).map(|(support, full)| {
+                    // where the zone's own average lies within the part, it is the part's
+                    let known = |n: usize| {
+                        let e: &Range<usize> = &extents[zone][n];
+                        (!e.is_empty() && full.start <= e.start && e.end <= full.end).then(|| whole(n))
+                    };
+                    scene.part(self.rail_origin_y, wheel, &support, known, &mut scratch)
+                });
+                self.split[zone] = Some(Box::new(parts));
             }
         }
+    }
+}
+
+/// From the first to the last station that an average is over.
+fn extent(turned: &[Turned], fine: &[(usize, f64)], least: f64, penetration: f64) -> Range<usize> {
+    let mut within = fine.iter().filter(|(k, g)| (g - least) * turned[*k].cos < penetration).map(|(k, _)| *k);
+    match within.next() {
+        Some(first) => first..within.last().unwrap_or(first) + 1,
+        None => 0..0,
     }
 }
 
@@ -249,15 +271,25 @@ impl Scene<'_> {
         }
     }
 
-    /// One part of a zone that touches in two places, over all nodes.
-    fn part(&self, rail_origin_y: f64, wheel: &Profile, support: &Support, scratch: &mut Scratch) -> Part {
-        let mut out =
-            Part { gaps: Vec::with_capacity(SHIFTS * ROLLS), values: Vec::with_capacity(SHIFTS * ROLLS) };
+    /// One part of a zone that touches in two places, over all nodes; `known` has those that need no search.
+    fn part(
+        &self,
+        rail_origin_y: f64,
+        wheel: &Profile,
+        support: &Support,
+        known: impl Fn(usize) -> Option<([f64; 2], Values)>,
+        scratch: &mut Scratch,
+    ) -> Part {
+        let count = SHIFTS * ROLLS;
+        let mut out = Part { gaps: Vec::with_capacity(count), values: Vec::with_capacity(count) };
         self.nodes(rail_origin_y, wheel, |turned, offset| {
-            self.look(turned, offset, support.first..support.end, scratch);
-            let found = self.node(turned, offset, support, scratch);
-            out.gaps.push(found.as_ref().map_or([NO_RAIL, 0.0], |f| f.gap));
-            out.values.push(found.map_or([0.0; 16], |f| f.values));
+            let (gap, values) = known(out.gaps.len()).unwrap_or_else(|| {
+                self.look(turned, offset, support.first..support.end, scratch);
+                self.node(turned, offset, support, scratch)
+                    .map_or(([NO_RAIL, 0.0], [0.0; 16]), |f| (f.gap, f.values))
+            });
+            out.gaps.push(gap);
+            out.values.push(values);
         });
         out
     }

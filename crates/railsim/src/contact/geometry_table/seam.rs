@@ -1,13 +1,13 @@
 //! Where a zone of the wheel touches in two places at once.
 //!
-//! While a table is built, every node at which the stations within the averages' interpenetration do not hang together is noted: the stations
-//! between the two deepest stretches count for a seam there, those within the stretches against it, each by how deep the lesser stretch reaches.
-//! Where that comes to half the interpenetration somewhere, the zone is cut where most counts for it.
+//! While a table is built, every node is noted at which the wheel, lowered by the approach under load, would press two patches of one zone into the rail: the stations
+//! between the two deepest count for a seam there, those within them against it, each by how deep the lesser patch reaches.
+//! Where that comes to half the approach somewhere, the zone is cut where most counts for it.
 
 use super::build::Turned;
 use std::ops::Range;
 
-/// Depth of the lesser stretch, as a part of the interpenetration, from which on a zone is cut: both places then carry much of the load.
+/// Depth of the lesser patch, as a part of the approach, from which on a zone is cut: it then carries a third of the other's load.
 const LEAST_DEPTH: f64 = 0.5;
 /// A seam is what has this part of the greatest count.
 const PLATEAU: f64 = 0.9;
@@ -32,20 +32,20 @@ impl Seams {
         Self { score: vec![0.0; stations], strongest: 0.0 }
     }
 
-    /// A node: the zone's weight chi, vertical gaps of its stations in order, `least` the smallest.
+    /// A node: the zone's weight chi, vertical gaps of its stations in order, `least` the smallest; the approach along the normal, m.
     pub(super) fn note(
         &mut self,
         turned: &[Turned],
         chi: &[f64],
         fine: &[(usize, f64)],
         least: f64,
-        penetration: f64,
+        approach: f64,
     ) {
         // the two deepest
         let mut best: [Option<Stretch>; 2] = [None, None];
         let mut current: Option<Stretch> = None;
         for &(k, g) in fine {
-            let depth = 1.0 - (g - least) * turned[k].cos / penetration;
+            let depth = 1.0 - (g - least) * turned[k].cos / approach;
             if depth <= 0.0 {
                 continue;
             }
