@@ -38,7 +38,7 @@ $(MODULE): $(SITE) $(RUST)
 
 test: dev
 	cargo test --quiet --no-fail-fast
-	$(BIN)/pytest -m 'not slow'
+	$(BIN)/pytest -n auto -m 'not slow'
 
 check: format lint types architecture rust pytest
 
@@ -61,7 +61,7 @@ rust:
 	cargo test --quiet --no-fail-fast
 
 pytest: dev
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto
 
 bench: dev
 	cargo bench

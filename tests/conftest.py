@@ -15,7 +15,8 @@ import lmap
 
 TESTS = Path(__file__).parent
 ROOT = TESTS.parent
-sys.path.insert(0, str(TESTS / "unit"))
+for helpers in ("properties", "unit"):
+    sys.path.insert(0, str(TESTS / helpers))
 
 
 def has_core() -> bool:
@@ -34,6 +35,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("needs_core"):
             item.add_marker(pytest.mark.skip(reason="the compiled core is not built"))
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No test finds results of another one, nor of the user's."""
+    monkeypatch.setenv("LMAP_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
 
 
 @pytest.fixture(scope="session")

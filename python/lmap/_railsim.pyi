@@ -201,16 +201,26 @@ def smooth_profile(points_json: str, kind: Literal["wheel", "rail"], half_width:
     Smoothed over +-`half_width` mm (0.3 to 10). `InputError` for points that contact cannot be computed with.
     """
 
-def check_case(case_json: str) -> None:
+def check_case(case_json: str, tables: Tables | None = None) -> None:
     """Raise `InputError` with every fault of a case; key paths start at the root of the case."""
 
-def channels(case_json: str) -> list[tuple[str, str, str]]:
+@final
+class Tables:
+    """What calls share: contact tables, each built once for a wheel, a rail and how they are placed (some 0.2 s), and
+    the case that was read last.
+
+    At most 16 tables are kept. Results do not depend on it.
+    """
+
+    def __new__(cls) -> Tables: ...
+
+def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of every channel that a case records, in the order of its columns."""
 
-def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
+def track_extremes(case_json: str, tables: Tables | None = None) -> dict[str, tuple[float, float]]:
     """Smallest and largest `lateral`, `vertical`, `cross_level` and `gauge` deviation of a case's track, m."""
 
-def equivalent_conicity(case_json: str, amplitude: float) -> float | None:
+def equivalent_conicity(case_json: str, amplitude: float, tables: Tables | None = None) -> float | None:
     """Equivalent conicity of a case's wheels on its rails at a lateral amplitude in metres (EN 15302).
 
     `None` where there is no oscillation of this amplitude: the rolling radius difference does not restore, or the
@@ -327,8 +337,9 @@ def run_cases(
     jobs: int,
     on_progress: Callable[[int, float, float, float], object],
     on_done: Callable[[int, Frame | RailsimError], object],
+    tables: Tables | None = None,
 ) -> None:
-    """Run cases on `jobs` threads; returns when the last one has ended.
+    """Run cases on `jobs` threads, begun in their order; returns when the last one has ended.
 
     Both callbacks are called on the calling thread: `on_progress(index, fraction, distance_m,
     real_time_factor)` about ten times a second for each case that is on its way, `on_done(index, result)`

@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import os
+import re
 import shutil
 import tempfile
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lmap import files
 from lmap.errors import InputProblem, LmapError, Problem, listed, nearest_hint
-from lmap.verdict import Acceptance, CaseResult, SpecVerdict, outcome_of
+from lmap.verdict import Acceptance, SpecVerdict
 
 if TYPE_CHECKING:
-    import polars as pl
-
     from lmap.execute.local import CaseOutcome
     from lmap.execute.progress import Progress
+    from lmap.execute.store import Store
     from lmap.prepare import Prepared
+    from lmap.spec.case import Case
 
 
 def check(
@@ -30,33 +32,120 @@ def check(
     jobs: int | None = None,
     report: str | Path | None = None,
     progress: Progress | None = None,
+    cache: bool | str | Path = True,
 ) -> Acceptance:
     """Simulates and judges specs: files, folders, names (`hunting`) or ids (`2C.1`) of tests that ship.
 
     `set` overrides keys of the specs and named parameters of their vehicles, `jobs` is the number of threads
     (default: all processors), `report` a folder to write. Every spec is read, expanded and checked before the
-    first one runs; an `InputProblem` carries everything that is wrong with any of them.
+    first one runs; an `InputProblem` carries everything that is wrong with any of them. Results are kept in
+    `LMAP_CACHE_DIR` or the user's cache folder, or in the folder that `cache` names, and found there the next time;
+    with `cache=False` everything runs. Frames stay on disk until a case's `frame` or `quantities` is asked for.
     """
     begun = time.perf_counter()
     given = [specs] if isinstance(specs, str | Path) else list(specs)
     folder = None if report is None else report_folder(report)
     from lmap.spec import overrides
 
-    prepared = _prepare_all(given, overrides.checked(set or {}))
-
-    from lmap.execute.local import run_cases
-
-    outcomes = run_cases([case for one in prepared for case in one.cases], jobs=jobs, progress=progress)
-    verdicts = []
-    for one in prepared:
-        own, outcomes = outcomes[: len(one.cases)], outcomes[len(one.cases) :]
-        verdicts.append(_judge(one, own))
+    store = open_store(cache)
+    prepared = _prepare_all(given, overrides.checked(set or {}), store)
+    verdicts = judge_all(prepared, store, jobs=jobs, progress=progress)
     acceptance = Acceptance(
         specs=tuple(verdicts), version=version(), core=_core(), wall_s=time.perf_counter() - begun
     )
     if folder is not None:
         write_report(acceptance, folder)
     return acceptance
+
+
+def open_store(cache: bool | str | Path) -> Store:
+    """Where results are kept: the user's cache, a folder, or with `False` one that is forgotten afterwards."""
+    from lmap.execute.store import Store, default_folder
+
+    if cache is False:
+        return Store.temporary(_core())
+    store = Store(default_folder() if cache is True else Path(cache), _core())
+    store.make_room()
+    return store
+
+
+def judge_all(
+    prepared: Sequence[Prepared],
+    store: Store,
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    heard: Callable[[int, SpecVerdict], None] | None = None,
+) -> list[SpecVerdict]:
+    """Runs what is not in the store, all cases of all specs in one pool; each spec is judged as its last case ends.
+
+    Verdicts stand in the order of the specs. `heard(position, verdict)` is called as they come.
+    """
+    from lmap.execute.local import run_cases
+
+    outcomes: dict[str, CaseOutcome] = {}
+    waiting: list[builtins.set[str]] = []
+    missing: dict[str, tuple[Case, str]] = {}
+    for one in prepared:
+        for case in one.cases:
+            if case.hash in outcomes or case.hash in missing:
+                continue
+            found = store.outcome(case.hash)
+            if found is None:
+                missing[case.hash] = (case, _name(one, case, alone=len(prepared) == 1))
+            else:
+                outcomes[case.hash] = found
+        waiting.append({case.hash for case in one.cases if case.hash in missing})
+    verdicts: list[SpecVerdict | None] = [None] * len(prepared)
+
+    def settle(position: int) -> None:
+        verdict = _settled(prepared[position], outcomes, store)
+        verdicts[position] = verdict
+        if heard is not None:
+            heard(position, verdict)
+
+    def ended(case_hash: str, outcome: CaseOutcome) -> None:
+        outcomes[case_hash] = outcome
+        for position, left in enumerate(waiting):
+            if case_hash in left:
+                left.discard(case_hash)
+                if not left:
+                    settle(position)
+
+    run_cases(
+        [case for case, _ in missing.values()],
+        jobs=jobs,
+        progress=progress,
+        names=[name for _, name in missing.values()],
+        store=store,
+        known=len(outcomes),
+        heard=ended,
+    )
+    for position in range(len(prepared)):
+        if verdicts[position] is None:
+            settle(position)
+    return [verdict for verdict in verdicts if verdict is not None]
+
+
+def _settled(one: Prepared, outcomes: dict[str, CaseOutcome], store: Store) -> SpecVerdict:
+    """The verdict; a frame that cannot be read any more is made again."""
+    from lmap.execute.local import run_cases
+    from lmap.execute.store import LostFrame
+    from lmap.judge import judge_spec
+
+    for _ in one.cases:
+        try:
+            return judge_spec(one, outcomes, store)
+        except LostFrame as lost:
+            store.drop(lost.case_hash)
+            [case] = [case for case in one.cases if case.hash == lost.case_hash][:1]
+            [outcomes[case.hash]] = run_cases([case], jobs=1, store=store)
+    return judge_spec(one, outcomes, store)
+
+
+def _name(one: Prepared, case: Case, *, alone: bool) -> str:
+    """A case as progress calls it."""
+    return case.label if alone else f"{one.spec.id} {case.label}"
 
 
 def version() -> str:
@@ -74,7 +163,7 @@ def find_specs(given: str | Path) -> list[Path]:
     """The files that a SPEC argument means: a file, every spec of a folder, or a test by name or id."""
     text, path = str(given), Path(given)
     if path.is_dir() and not path.is_symlink():
-        found = sorted(path.glob("*.toml"))
+        found = in_order(path.glob("*.toml"))
         if not found:
             raise InputProblem(
                 Problem(file=files.shown(path), found="a folder without specs", allowed="*.toml in it")
@@ -104,6 +193,16 @@ def shipped() -> list[Path]:
     return [by_name[name] for name in sorted(by_name)]
 
 
+def in_order(paths: Iterable[Path]) -> list[Path]:
+    """By id, as the procedure has them: numbers count as numbers, so that 2C.10 follows 2C.9."""
+
+    def key(path: Path) -> tuple[list[tuple[int, str]], str]:
+        parts = re.findall(r"[0-9]+|[^0-9.]+", spec_id(path))
+        return [(int(one), "") if one.isdigit() else (0, one) for one in parts], path.name
+
+    return sorted(paths, key=key)
+
+
 def spec_id(path: Path) -> str:
     """The `id` that a spec file says it has; empty where it cannot be read."""
     from lmap import toml
@@ -114,7 +213,9 @@ def spec_id(path: Path) -> str:
         return ""
 
 
-def _prepare_all(given: Sequence[str | Path], settings: Mapping[str, Any]) -> list[Prepared]:
+def _prepare_all(
+    given: Sequence[str | Path], settings: Mapping[str, Any], store: Store | None = None
+) -> list[Prepared]:
     from lmap.prepare import prepare
 
     paths: dict[Path, Path] = {}
@@ -128,7 +229,7 @@ def _prepare_all(given: Sequence[str | Path], settings: Mapping[str, Any]) -> li
     prepared = []
     for path in paths.values():
         try:
-            prepared.append(prepare(path, settings))
+            prepared.append(prepare(path, settings, store))
         except InputProblem as error:
             problems += error.problems
     if problems:
@@ -136,74 +237,6 @@ def _prepare_all(given: Sequence[str | Path], settings: Mapping[str, Any]) -> li
     if not prepared:
         raise InputProblem(Problem(found="no spec", allowed="at least one SPEC"))
     return prepared
-
-
-def _judge(prepared: Prepared, outcomes: Sequence[CaseOutcome]) -> SpecVerdict:
-    """The spec's verdict on what its cases gave."""
-    import polars as pl
-
-    from lmap.criteria import judge
-
-    spec = prepared.spec
-    frames = {
-        case.label: pl.DataFrame() if outcome.frame is None else outcome.frame
-        for case, outcome in zip(prepared.cases, outcomes, strict=True)
-    }
-    quantities: Mapping[str, pl.DataFrame] = frames
-    if all(outcome.complete for outcome in outcomes):
-        quantities = prepared.procedure.quantities(spec, frames)
-    units = {name: channel.unit for name, channel in prepared.channels.items()}
-    criteria = tuple(
-        judge(
-            criterion,
-            quantities[case.label],
-            units,
-            index=index,
-            label=case.label,
-            case_hash=case.hash,
-            ended=outcome.trouble,
-        )
-        for index, criterion in enumerate(spec.criterion)
-        for case, outcome in zip(prepared.cases, outcomes, strict=True)
-    )
-    look = prepared.look
-    if look is not None:
-        criteria += tuple(
-            judge(criterion, look.frame, units, index=index, label=look.label, case_hash=look.hash)
-            for index, criterion in enumerate(spec.criterion)
-        )
-        criteria += (look.by_person,)
-    cases = tuple(
-        CaseResult(
-            label=case.label,
-            hash=case.hash,
-            case=case.data,
-            case_json=case.json,
-            frame=frames[case.label],
-            quantities=quantities[case.label],
-            ended=outcome.ended,
-            statistics=outcome.statistics,
-            units=units,
-            meanings={name: channel.meaning for name, channel in prepared.channels.items()},
-            wall_s=outcome.wall_s,
-        )
-        for case, outcome in zip(prepared.cases, outcomes, strict=True)
-    )
-    return SpecVerdict(
-        id=spec.id,
-        title=spec.title,
-        file=prepared.loaded.document.shown,
-        procedure=spec.procedure,
-        vehicle=prepared.vehicle.data.name,
-        condition=spec.condition or "",
-        outcome=outcome_of(criteria),
-        criteria=criteria,
-        facts=prepared.facts,
-        cases=cases,
-        inputs=prepared.inputs,
-        overrides=prepared.loaded.settings,
-        drawing=None if look is None else look.drawing,
-    )
 
 
 def _core() -> str:

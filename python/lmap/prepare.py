@@ -2,22 +2,40 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
+from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lmap import contact, files, procedures, toml
 from lmap.analyse import first_place, vehicle_case
 from lmap.criteria.chain import signal_problems
 from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
-from lmap.procedures.base import CONICITY_AMPLITUDE, CaseFigures, Look, Looking, Procedure
+from lmap.procedures.base import (
+    CONICITY_AMPLITUDE,
+    CaseFigures,
+    Deriving,
+    Look,
+    Looking,
+    Procedure,
+    Rewriting,
+    Set,
+)
+from lmap.procedures.base import settings as checked_settings
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
+from lmap.spec.measured import record_paths, with_records
 from lmap.spec.model import Spec
 from lmap.vehicle import Vehicle, located
 from lmap.verdict import Fact, InputFile
+
+if TYPE_CHECKING:
+    from lmap.execute.store import Store
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +54,8 @@ class Prepared:
     inputs: tuple[InputFile, ...]
     look: Look | None = None
     """What a procedure without cases sees in the vehicle."""
+    key: str | None = None
+    """Hash of everything that judging hangs on beside the core; none where nothing is simulated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +86,17 @@ class _Sources:
         return self.loaded.locate(problem)
 
 
-def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
-    """A spec ready to run; an `InputProblem` with everything that is wrong with it."""
+def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store | None = None) -> Prepared:
+    """A spec ready to run; an `InputProblem` with everything that is wrong with it.
+
+    What the core says about cases that it has found good before is taken from the `store`.
+    """
     loaded = load(path, settings)
     procedure = _procedure(loaded)
     vehicle = _vehicle(loaded)
     spec, base = _with_base_track(loaded, vehicle)
+    spec, outline = _with_outline(loaded, spec)
+    _check_settings(loaded, spec, procedure)
     if isinstance(procedure, Looking):
         return _looked_at(loaded, spec, vehicle, procedure, base)
     if spec.sign_off is not None:
@@ -89,11 +114,21 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
             loaded.locate(Problem(key=("run",), found=found, allowed="speeds and profiles that differ"))
         )
     profiles, data = _profiles(cases, loaded, vehicle, base)
-    cases = [case.with_profiles(data) for case in cases]
+    try:
+        cases = [with_records(case.with_profiles(data), loaded.document.path) for case in cases]
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
     sources = _Sources(loaded, vehicle, base, profiles)
-    known = _checked(cases, sources, procedure)
-    _check_signals(loaded, spec, known)
-    figures = [_figures(case) for case in cases]
+    key = _key(spec, cases)
+    noted = None if store is None else _noted(store, key)
+    if noted is None:
+        known = _checked(spec, cases, sources, procedure)
+        _check_signals(loaded, spec, known)
+        facts = tuple(procedure.facts(spec, [_Figures(case) for case in cases]))
+        if store is not None:
+            store.write_note(key, [list(known.values()), [asdict(fact) for fact in facts]])
+    else:
+        known, facts = noted
     return Prepared(
         loaded=loaded,
         spec=spec,
@@ -101,9 +136,39 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None) -> Prepared:
         procedure=procedure,
         cases=tuple(cases),
         channels=known,
-        facts=tuple(procedure.facts(spec, figures)),
-        inputs=_inputs(sources),
+        facts=facts,
+        inputs=(*_inputs(sources), *_outline_input(outline), *_records(cases, loaded.document.path)),
+        key=key,
     )
+
+
+def _key(spec: Spec, cases: Sequence[Case]) -> str:
+    """Hash of spec, cases and the code that reads them."""
+    written = [code_fingerprint(), spec.model_dump(mode="json"), [case.hash for case in cases]]
+    return files.sha256(json.dumps(written, sort_keys=True))
+
+
+def _noted(store: Store, key: str) -> tuple[dict[str, Channel], tuple[Fact, ...]] | None:
+    """Channels and facts of a spec that was prepared before, word for word."""
+    plain = store.note(key)
+    if plain is None:
+        return None
+    channels_, facts = plain
+    return {name: Channel(name, unit, meaning) for name, unit, meaning in channels_}, tuple(
+        Fact(**fact) for fact in facts
+    )
+
+
+@functools.cache
+def code_fingerprint() -> str:
+    """Hash of this package's Python and of the libraries that it computes with."""
+    package = Path(__file__).parent
+    sums = [
+        f"{path.relative_to(package).as_posix()} {hashlib.sha256(path.read_bytes()).hexdigest()}"
+        for path in sorted(package.rglob("*.py"))
+    ]
+    sums += [f"{name} {metadata.version(name)}" for name in ("numpy", "polars", "scipy")]
+    return files.sha256("\n".join(sums))
 
 
 def _looked_at(
@@ -138,12 +203,39 @@ def _procedure(loaded: LoadedSpec) -> Procedure:
     return procedure
 
 
+def _with_outline(loaded: LoadedSpec, spec: Spec) -> tuple[Spec, toml.Document | None]:
+    """The spec with the reference outline that its `[test]` names in the name's place."""
+    name = spec.test.get("outline")
+    if not isinstance(name, str):
+        return spec, None
+    try:
+        document = toml.load(files.find(files.OUTLINE, name, loaded.document.path), "outline")
+    except InputProblem as error:
+        key: KeyPath = ("test", "outline")
+        raise InputProblem(
+            [p if p.file is not None else loaded.locate(p.at(prefix=key)) for p in error.problems]
+        ) from None
+    return spec.model_copy(update={"test": {**spec.test, "outline": document.data}}), document
+
+
+def _check_settings(loaded: LoadedSpec, spec: Spec, procedure: Procedure) -> None:
+    """`[test]` against what the procedure knows."""
+    try:
+        if isinstance(procedure, Set):
+            checked_settings(spec, procedure.SETTINGS)
+        elif spec.test:
+            allowed = f"none: procedure {procedure.NAME} has no numbers of its own"
+            raise InputProblem(Problem(key=("test",), found=listed(spec.test), allowed=allowed))
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
+
+
 def _vehicle(loaded: LoadedSpec) -> Vehicle:
     spec = loaded.spec
     try:
         # a path is seen from where it is written: the spec's folder, or the caller's
         from_caller = "vehicle" in loaded.given and files.VEHICLE.is_path(spec.vehicle)
-        beside = Path.cwd() if from_caller else loaded.document.path
+        beside = Path.cwd() if from_caller else loaded.written_in("vehicle")
         vehicle = Vehicle.load(spec.vehicle, beside=beside, overrides=loaded.parameters)
         known = vehicle.data.conditions
         if spec.condition is None:
@@ -175,7 +267,9 @@ def _with_base_track(loaded: LoadedSpec, vehicle: Vehicle) -> tuple[Spec, toml.D
     name = own.pop("base", vehicle.data.track)
     if name is None:
         return loaded.spec.model_copy(update={"track": own}), None
-    beside = loaded.document.path if named_here else vehicle.document.path
+    # a path is seen from where it is written: the spec's folder, the caller's, or the vehicle's
+    in_spec = Path.cwd() if "track.base" in loaded.given else loaded.document.path
+    beside = in_spec if named_here else vehicle.document.path
     key: KeyPath = ("track", "base") if named_here else ("track",)
     owner = loaded if named_here else vehicle.document
     if not isinstance(name, str):
@@ -204,8 +298,9 @@ def _profiles(
         for name, key in case.profile_names.items():
             if name in data:
                 continue
+            from_caller = ".".join(map(str, key)) in loaded.given and files.PROFILE.is_path(name)
             try:
-                path = first_place(name, places)
+                path = first_place(name, [Path.cwd(), *places] if from_caller else places)
                 text = files.read_text(path, "profile")
             except InputProblem as error:
                 problems += [p if p.file else loaded.locate(p.at(prefix=key)) for p in error.problems]
@@ -222,21 +317,46 @@ def _profiles(
     return found, data
 
 
-def _checked(cases: Sequence[Case], sources: _Sources, procedure: Procedure) -> dict[str, Channel]:
-    """The channels that every case gives, after the core has checked every case."""
+def _checked(
+    spec: Spec, cases: Sequence[Case], sources: _Sources, procedure: Procedure
+) -> dict[str, Channel]:
+    """The channels that any case gives and those that are derived, after the core has checked every case."""
+
+    def told(case: Case, problem: Problem) -> Problem:
+        """A fault of a case where the spec writes it, or the file that does."""
+        if isinstance(procedure, Rewriting):
+            problem = replace(problem, key=procedure.origin(spec, case.label, problem.key))
+        return sources.locate(problem)
+
+    known: dict[str, Channel] = {}
     problems: list[Problem] = []
+    asked: set[str] = set()
     for case in cases:
         try:
             check_case(case)
+            alike = _names_hang_on(case)
+            if alike in asked:
+                continue
+            asked.add(alike)
+            # compiles the model, and knows more: names of coordinates, of bodies
+            for channel in channels(case):
+                known.setdefault(channel.name, channel)
         except InputProblem as error:
-            problems += [sources.locate(problem) for problem in error.problems]
+            problems += [told(case, problem) for problem in error.problems]
     if problems:
         raise InputProblem(problems)
-    common: dict[str, Channel] = {}
-    for number, case in enumerate(cases):
-        given = {channel.name: channel for channel in channels(case)}
-        common = given if number == 0 else {name: common[name] for name in common if name in given}
-    return common | {name: Channel(name, unit, "") for name, unit in procedure.UNITS.items()}
+    added = dict(procedure.UNITS)
+    if isinstance(procedure, Deriving):
+        added |= procedure.derived(spec, {name: channel.unit for name, channel in known.items()})
+    return known | {name: Channel(name, unit, "") for name, unit in added.items()}
+
+
+def _names_hang_on(case: Case) -> str:
+    """The case less its speed and irregularity: cases differ in them, the names of channels do not."""
+    run = {key: value for key, value in case.data["run"].items() if key != "speed"}
+    track = {key: value for key, value in case.data["track"].items() if key != "irregularity"}
+    part = {key: value for key, value in case.data.items() if key not in ("label", "profiles")}
+    return json.dumps({**part, "run": run, "track": track}, sort_keys=True)
 
 
 def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel]) -> None:
@@ -250,27 +370,56 @@ def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel])
         raise InputProblem(problems)
 
 
-def _figures(case: Case) -> CaseFigures:
-    """What is shown beside the verdicts; what the core cannot say is left out."""
-    try:
-        extremes = track_extremes(case)
-    except SimulationProblem:
-        extremes = {}
-    try:
-        conicity = contact.equivalent_conicity(case, CONICITY_AMPLITUDE)
-    except SimulationProblem:
-        conicity = None
-    return CaseFigures(case=case, track_extremes=extremes, conicity=conicity)
+class _Figures(CaseFigures):
+    """What is shown beside the verdicts, asked of the core once a procedure asks; what it cannot say is left out."""
+
+    def __init__(self, case: Case) -> None:
+        object.__setattr__(self, "case", case)
+
+    @functools.cached_property
+    def track_extremes(self) -> Mapping[str, tuple[float, float]]:
+        """Least and largest deviation by name, m."""
+        try:
+            return track_extremes(self.case)
+        except SimulationProblem:
+            return {}
+
+    @functools.cached_property
+    def conicity(self) -> float | None:
+        """Equivalent conicity at `CONICITY_AMPLITUDE`."""
+        try:
+            return contact.equivalent_conicity(self.case, CONICITY_AMPLITUDE)
+        except SimulationProblem:
+            return None
 
 
 def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
-    documents = [("spec", sources.loaded.document), ("vehicle", sources.vehicle.document)]
+    documents = [("spec", sources.loaded.asked), ("vehicle", sources.vehicle.document)]
+    if sources.loaded.variant is not None:
+        documents.insert(1, ("spec", sources.loaded.document))
     if sources.base is not None:
         documents.append(("track", sources.base))
     inputs = [InputFile(role=role, path=doc.shown, sha256=doc.sha256) for role, doc in documents]
     for path, text in sources.profiles.values():
         inputs.append(InputFile(role="profile", path=files.shown(path), sha256=files.sha256(text)))
     return tuple(inputs)
+
+
+def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
+    """The measured tracks of all cases."""
+    found: dict[Path, str] = {}
+    for case in cases:
+        for path in record_paths(case, beside).values():
+            found.setdefault(path, hashlib.sha256(path.read_bytes()).hexdigest())
+    return [
+        InputFile(role="measured track", path=files.shown(path), sha256=sha) for path, sha in found.items()
+    ]
+
+
+def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
+    if outline is None:
+        return ()
+    return (InputFile(role="outline", path=outline.shown, sha256=outline.sha256),)
 
 
 def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:
@@ -290,6 +439,7 @@ def load_case(path: Path) -> Case:
             case = case_of(document.data, path.stem)
         else:
             case = case_of(toml.json_loads(files.read_text(path, "case"), "a case"), path.stem)
+        case = with_records(case, path)
         check_case(case)
     except InputProblem as error:
         raise InputProblem(

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,6 +28,16 @@ def core() -> ModuleType:
             f"the compiled module lmap._railsim is missing ({error}): install the package"
         ) from error
     return _railsim
+
+
+def tables() -> Any:
+    """Contact tables that every call into the core shares: of this process, at most 16, without a say in results."""
+    return _tables_of(core())
+
+
+@functools.cache
+def _tables_of(railsim: ModuleType) -> Any:
+    return railsim.Tables()
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -25,6 +25,8 @@ class Vehicle:
     locomotive.data.design_speed           # m/s
     locomotive.modes(32.0)                 # frame of modes, rolling at 32 m/s
     soft = locomotive.resolve({"secondary.kz": 5e5}, condition="tare")
+    soft.run({"kind": "equilibrium", "speed": 20.0})
+    wagon = Vehicle.of({"name": "wagon", "body": [...], ...})
     """
 
     document: toml.Document
@@ -47,6 +49,40 @@ class Vehicle:
         document = include.load(files.find(files.VEHICLE, str(name), place))
         return cls(document, _resolve(document, overrides or {}, condition))
 
+    @classmethod
+    def of(
+        cls,
+        data: Mapping[str, Any] | str,
+        *,
+        beside: str | Path | None = None,
+        overrides: Mapping[str, Any] | None = None,
+        condition: str | None = None,
+    ) -> Self:
+        """A vehicle from plain data with the keys of a vehicle file, or from TOML text.
+
+        Its track and profiles are looked for from `beside`, the working folder by default. Raises `InputProblem`.
+        """
+        written = toml.loads(data) if isinstance(data, str) else toml.plain(data, "a vehicle")
+        if "include" in written:
+            raise InputProblem(Problem(key=("include",), found="files", allowed="a vehicle in one piece"))
+        place = Path.cwd() if beside is None else Path(beside)
+        text = data if isinstance(data, str) else json.dumps(written)
+        document = _Given(place / "vehicle", text, written)
+        return cls(document, _resolve(document, overrides or {}, condition))
+
+    def run(self, run: Mapping[str, Any], *, track: Mapping[str, Any] | None = None) -> pl.DataFrame:
+        """One run of any kind on the vehicle's own base track: its channels.
+
+        `run` has the keys of `[run]` in a case (`docs/concepts/analyses.md`); `track` goes over the base track, 200 m
+        of it by default. Friction is 0.4 and the wheel profile the vehicle's own where `run` names none. Raises
+        `InputProblem` or `SimulationProblem`.
+        """
+        from lmap.analyse import vehicle_case
+        from lmap.simulate import simulate
+
+        label = str(run.get("kind", "run"))
+        return simulate(vehicle_case(self.data, self.document.path, run, label=label, track=track))
+
     def modes(self, speed: float | Sequence[float] = 0.0, *, friction: float = 0.4) -> pl.DataFrame:
         """Eigenvalues, names and shapes of the vehicle's modes on its own base track at a speed or at several, m/s.
 
@@ -60,6 +96,14 @@ class Vehicle:
     def resolve(self, overrides: Mapping[str, Any] | None = None, condition: str | None = None) -> Self:
         """The same file with named parameters overridden and an operating condition applied."""
         return type(self)(self.document, _resolve(self.document, overrides or {}, condition))
+
+
+class _Given(toml.Document):
+    """Data that no file holds: faults are told by their keys."""
+
+    def locate(self, problem: Problem, key: KeyPath | None = None) -> Problem:
+        """The problem at its key."""
+        return replace(problem, key=problem.key if key is None else key)
 
 
 def _resolve(document: toml.Document, overrides: Mapping[str, Any], condition: str | None) -> VehicleData:

@@ -7,10 +7,10 @@ and JSON read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 if TYPE_CHECKING:
     import polars as pl
@@ -114,13 +114,100 @@ class Fact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DrawnCurve:
+    """One line, or a set of points, of a drawing."""
+
+    name: str
+    x: Sequence[float]
+    y: Sequence[float]
+    role: Literal["line", "limit", "points", "outline"] = "line"
+    """An `outline` is closed by itself; a `limit` is dashed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drawing:
+    """A plot of one quantity against another that is no time: a loop, an outline, a figure over speed."""
+
+    title: str
+    x_label: str
+    """With the unit: `cant (mm)`."""
+    y_label: str
+    curves: tuple[DrawnCurve, ...]
+    caption: str = ""
+    equal_axes: bool = False
+    """A metre is as long across as up."""
+    y_down: bool = False
+    """The vertical axis points down, as z does."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class InputFile:
     """A file that went into a check."""
 
     role: str
-    """spec, vehicle, track or profile."""
+    """spec, vehicle, track, outline, profile or measured track."""
     path: str
     sha256: str
+
+
+class Frames(Protocol):
+    """Where the frames of a spec's cases are; reading them may take long and much memory."""
+
+    def frame(self, label: str) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+
+    def quantities(self, label: str) -> pl.DataFrame:
+        """What the criteria judged."""
+
+    def held(self) -> Mapping[str, Held]:
+        """All of them, read once, by label."""
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Frames of one case, in memory."""
+
+    recorded: pl.DataFrame
+    judged: pl.DataFrame
+
+    def frame(self, label: str) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+        return self.recorded
+
+    def quantities(self, label: str) -> pl.DataFrame:
+        """What the criteria judged."""
+        return self.judged
+
+    def held(self) -> Mapping[str, Held]:
+        """Nothing to read."""
+        return {}
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much a run recorded."""
+
+    rows: int
+    simulated: float | None
+    """s, from the first to the last row; none without a column `t`."""
+    distance: float | None
+    """m."""
+
+    @staticmethod
+    def of(frame: pl.DataFrame) -> Extent:
+        """Read off a frame."""
+        return Extent(frame.height, _span(frame, "t"), _span(frame, "s"))
+
+
+NO_EXTENT = Extent(0, None, None)
+
+
+def _span(frame: pl.DataFrame, name: str) -> float | None:
+    """From the first to the last value of a column; none where there is none."""
+    if name not in frame.columns or frame.height == 0:
+        return None
+    first, last = frame.get_column(name)[0], frame.get_column(name)[-1]
+    return None if first is None or last is None else float(last) - float(first)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,10 +221,8 @@ class CaseResult:
     """The case as handed to the core."""
     case_json: str
     """The very text whose hash is `hash`."""
-    frame: pl.DataFrame
-    """Channels as the core recorded them."""
-    quantities: pl.DataFrame
-    """What the criteria judged: the frame, or what the procedure computed from it. Plot from this one."""
+    frames: Frames
+    """Where its frames are: in memory, or on disk until somebody asks."""
     ended: Mapping[str, Any]
     """How the run ended: `kind` (`end_of_track`, `complete` or `diverged`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any]
@@ -145,6 +230,23 @@ class CaseResult:
     """Unit by column of `quantities`."""
     meanings: Mapping[str, str]
     wall_s: float
+    known_extent: Extent | None = None
+    """Of the frame, where it is known without reading it."""
+
+    @property
+    def frame(self) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+        return self.frames.frame(self.label)
+
+    @property
+    def quantities(self) -> pl.DataFrame:
+        """What the criteria judged: the frame, or what the procedure computed from it. Plot from this one."""
+        return self.frames.quantities(self.label)
+
+    @property
+    def extent(self) -> Extent:
+        """How much the run recorded."""
+        return Extent.of(self.frame) if self.known_extent is None else self.known_extent
 
     @property
     def complete(self) -> bool:
@@ -171,6 +273,21 @@ class SpecVerdict:
     """What `[set]` and `--set` changed."""
     drawing: Mapping[str, Any] | None = None
     """Plain data of the vehicle's 3D page, where the procedure draws one."""
+    drawings: tuple[Drawing, ...] = ()
+    """Plots that the procedure makes of what was judged."""
+
+    def held(self) -> SpecVerdict:
+        """The same with the frames of its cases in memory, each read once: for as long as they are plotted."""
+        read: dict[int, Mapping[str, Held]] = {}
+        cases = []
+        for case in self.cases:
+            if isinstance(case.frames, Held):
+                cases.append(case)
+                continue
+            if id(case.frames) not in read:
+                read[id(case.frames)] = case.frames.held()
+            cases.append(replace(case, frames=read[id(case.frames)][case.label]))
+        return replace(self, cases=tuple(cases))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,11 +7,13 @@ import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from lmap import vehicle
 from lmap.cli import app
+from lmap.errors import InputProblem
 
 pytestmark = pytest.mark.needs_core
 ROOT = Path(__file__).parents[2]
@@ -293,3 +295,33 @@ def test_a_new_vehicle_is_one_and_is_never_overwritten(
     code, _, [message] = lmap("new", "vehicle", "other", "--like", "cocoo134")
     assert code == 2
     assert 'did you mean "coco134"' in message
+
+
+RIG_RUN = {"kind": "equilibrium", "speed": 10.0}
+
+
+def test_a_vehicle_from_data_is_the_vehicle_of_its_file() -> None:
+    file = vehicle.Vehicle.load(RIG, beside=ROOT)
+    text = (ROOT / RIG).read_text(encoding="utf-8")
+    for given in (text, dict(file.document.data)):
+        made = vehicle.Vehicle.of(given, beside=ROOT)
+        assert made.data.document == file.data.document
+        assert made.resolve({"suspension.ky": 3e5}).data.name == "suspended_wheelset"
+    assert file.run(RIG_RUN).equals(vehicle.Vehicle.of(text, beside=ROOT).run(RIG_RUN))
+
+
+@pytest.mark.parametrize(
+    ("spoiled", "message"),
+    [
+        ({"design_speed_kmh": -3}, "design_speed_kmh: found -3; allowed: a number > 0 km/h"),
+        ({"include": ["x.toml"]}, "include: found files; allowed: a vehicle in one piece"),
+        ({"name": object()}, "of type object"),
+        ({"design_speed_kmh": float("nan")}, "design_speed_kmh: found nan; allowed: a finite number"),
+    ],
+)
+def test_faults_of_data_are_told_by_key(spoiled: dict[str, Any], message: str) -> None:
+    data = dict(vehicle.Vehicle.load(RIG, beside=ROOT).document.data)
+    with pytest.raises(InputProblem) as refused:
+        vehicle.Vehicle.of(data | spoiled, beside=ROOT)
+    assert message in str(refused.value)
+    assert ".toml" not in str(refused.value)

@@ -17,14 +17,18 @@ import lmap
 pytestmark = pytest.mark.needs_core
 
 ROOT = Path(__file__).parents[2]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(lmap.__file__).parent.parent)}
+
+
+def environment() -> dict[str, str]:
+    """With the test's own cache in it."""
+    return {**os.environ, "PYTHONPATH": str(Path(lmap.__file__).parent.parent)}
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "lmap", *arguments],
         cwd=folder,
-        env=ENVIRONMENT,
+        env=environment(),
         capture_output=True,
         text=True,
         check=False,

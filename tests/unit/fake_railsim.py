@@ -32,6 +32,10 @@ class InputError(RailsimError):
         super().__init__("\n".join(f"{fault['path']}: found {fault['found']}" for fault in faults))
 
 
+class Tables:
+    pass
+
+
 class DivergenceError(RailsimError):
     pass
 
@@ -143,7 +147,7 @@ _KNOWN = {
 }
 
 
-def check_case(case_json: str) -> None:
+def check_case(case_json: str, tables: Tables | None = None) -> None:
     case = json.loads(case_json)
     faults = []
     for part, known in _KNOWN.items():
@@ -161,7 +165,7 @@ def check_case(case_json: str) -> None:
         raise InputError(faults)
 
 
-def channels(case_json: str) -> list[tuple[str, str, str]]:
+def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, str, str]]:
     found = [("t", "s", "time"), ("s", "m", "distance along the track"), ("v", "m/s", "speed")]
     for pivot in ("lead_pivot", "trail_pivot"):
         found += [
@@ -179,7 +183,7 @@ def channels(case_json: str) -> list[tuple[str, str, str]]:
     return found
 
 
-def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
+def track_extremes(case_json: str, tables: Tables | None = None) -> dict[str, tuple[float, float]]:
     return {
         "lateral": (-0.005, 0.0051),
         "vertical": (-0.006, 0.0058),
@@ -188,7 +192,7 @@ def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
     }
 
 
-def equivalent_conicity(case_json: str, amplitude: float) -> float:
+def equivalent_conicity(case_json: str, amplitude: float, tables: Tables | None = None) -> float:
     return 0.15
 
 
@@ -256,6 +260,7 @@ def run_cases(
     jobs: int,
     on_progress: Callable[[int, float, float, float], None],
     on_done: Callable[[int, Any], None],
+    tables: Tables | None = None,
 ) -> None:
     # last first: results must find their own place
     for index in reversed(range(len(cases))):

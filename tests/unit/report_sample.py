@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from lmap.criteria import Criterion, judge
-from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, Fact, InputFile, Outcome, SpecVerdict
+from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, Fact, Held, InputFile, Outcome, SpecVerdict
 
 LATERAL = Criterion.model_validate(
     {
@@ -88,8 +88,7 @@ def case(label: str, seed: int = 1, scale: float = 1.0, duration: float = 20.0, 
         hash=hashlib.sha256(text.encode()).hexdigest(),
         case=data,
         case_json=text,
-        frame=table,
-        quantities=table,
+        frames=Held(table, table),
         ended={"kind": "end_of_track", "t": duration, "s": 35.0 * duration, "message": None},
         statistics={"rhs_evaluations": 80000, "steps": 40000, "wall_s": 1.25},
         units=units(table),

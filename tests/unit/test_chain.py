@@ -322,6 +322,8 @@ def test_max_abs_of_a_one_sided_statistic_is_refused(statistic: dict[str, Any]) 
         {"sustained": {"window_s": 1.0, "absolute": True}},
         {"sliding_mean": {"window_m": 2.0, "absolute": True}},
         {"percentile": {"percent": 99.85, "absolute": True}},
+        {"percentile": {"percent": 99.85, "both_ends": True}},
+        {"median": {}},
         {"average_peak": {"window_s": 5.0}},
         {"sliding_rms": {"window_s": 2.0}},
         {"max_abs": {}},
@@ -338,7 +340,19 @@ def test_every_statistic_stands_in_one_of_the_two_lists_above() -> None:
     names = {name for name, kind in signals.BY_NAME.items() if issubclass(kind, signals.Statistic)}
     one_sided = {name for name in names if signals.BY_NAME[name].one_sided}  # type: ignore[attr-defined]
     assert one_sided == {"maximum", "minimum", "sustained", "sliding_mean", "percentile"}
-    assert names - one_sided == {"average_peak", "sliding_rms", "max_abs", "mean", "rms", "peak_to_peak"}
+    joint = {name for name in names if issubclass(signals.BY_NAME[name], signals.Joint)}
+    assert joint == {"mean_comfort", "vibration_total"}
+    both_sides = {
+        "average_peak",
+        "sliding_rms",
+        "max_abs",
+        "mean",
+        "median",
+        "rms",
+        "peak_to_peak",
+        "sperling",
+    }
+    assert names - one_sided - joint == both_sides
 
 
 @pytest.mark.parametrize("link", ["sustained", "sliding_mean"])

@@ -29,7 +29,7 @@ class Heard(Progress):
     def __init__(self) -> None:
         self.events: list[tuple[Any, ...]] = []
 
-    def begin(self, cases: Any, jobs: int) -> None:
+    def begin(self, cases: Any, jobs: int, known: int = 0) -> None:
         self.events.append(("begin", list(cases), jobs))
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
@@ -168,6 +168,18 @@ def test_a_vehicle_that_is_set_is_seen_from_the_working_folder() -> None:
     assert prepare(Path("specs/sway.toml"), {"vehicle": "./mine.toml"}).vehicle.data.name == "mine"
     with pytest.raises(InputProblem, match=r"--set vehicle: found \"\./gone\.toml\", which is no file"):
         prepare(Path("specs/sway.toml"), {"vehicle": "./gone.toml"})
+
+
+def test_a_track_and_a_profile_that_are_set_are_seen_from_the_working_folder() -> None:
+    text = Path("models/tracks/toy_track.toml").read_text(encoding="utf-8")
+    Path("mine.toml").write_text(text.replace("1.435", "1.6"), encoding="utf-8")
+    Path("mine.csv").write_bytes(Path("models/profiles/round.csv").read_bytes())
+    own = {"track.base": "./mine.toml", "run.wheel_profile": "./mine.csv"}
+    prepared = prepare(Path("specs/sway.toml"), own)
+    assert prepared.spec.track["gauge"] == 1.6
+    assert [one.path for one in prepared.inputs if one.path.startswith("mine")] == ["mine.toml", "mine.csv"]
+    with pytest.raises(InputProblem, match=r"--set track\.base: found \"\./gone\.toml\", which is no file"):
+        prepare(Path("specs/sway.toml"), {"track.base": "./gone.toml"})
 
 
 def test_faults_of_a_case_name_the_file_that_holds_the_part() -> None:

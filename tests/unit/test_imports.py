@@ -17,7 +17,7 @@ PACKAGE = Path(lmap.__file__).parent
 TIERS: tuple[tuple[str, ...], ...] = (
     ("errors", "verdict", "files"),
     ("toml",),
-    ("include", "reference"),
+    ("include", "reference", "formulas", "outline"),
     ("signals",),
     ("criteria",),
     ("spec",),
@@ -29,7 +29,9 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("lint",),
     ("report",),
     ("prepare",),
+    ("judge",),
     ("check",),
+    ("sweep",),
     ("cli",),
 )
 TIER = {part: number for number, parts in enumerate(TIERS) for part in parts}

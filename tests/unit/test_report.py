@@ -17,7 +17,7 @@ from rich.console import Console
 from lmap.report import document, junit, numbers, runs, to_json, words
 from lmap.report.parquet import to_parquet
 from lmap.report.terminal import table
-from lmap.verdict import Acceptance, CriterionVerdict, Outcome
+from lmap.verdict import Acceptance, CriterionVerdict, Held, Outcome
 
 
 def with_first(acceptance: Acceptance, **changes: Any) -> Acceptance:
@@ -217,7 +217,7 @@ def test_numbers_with_units_and_signs() -> None:
 
 
 def test_run_figures_of_an_empty_frame() -> None:
-    empty = sample.case("a", frame=pl.DataFrame(), wall_s=0.0, case={})
+    empty = sample.case("a", frames=Held(pl.DataFrame(), pl.DataFrame()), wall_s=0.0, case={})
     run = runs.figures(empty)
     assert (run.distance, run.simulated, run.wall, run.real_time_factor) == ("-", "-", "-", "-")
     assert (run.scheme, run.step) == ("-", "-")

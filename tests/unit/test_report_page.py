@@ -23,7 +23,7 @@ from lmap.report.figures.criterion import NEAR, WHOLE
 from lmap.report.figures.envelope import Array, envelope
 from lmap.report.figures.plot import Figure, plotly
 from lmap.report.page import render
-from lmap.verdict import Acceptance, CaseResult, Outcome, SpecVerdict
+from lmap.verdict import Acceptance, CaseResult, Held, Outcome, SpecVerdict
 
 VOID = {"meta", "link", "br", "img", "hr", "input"}
 
@@ -204,7 +204,7 @@ def test_extreme_below_zero_is_marked_below_zero() -> None:
     table = case.frame.with_columns(
         pl.when(pl.col("t") == 5.0).then(-0.02).otherwise(pl.col("ws2.y")).alias("ws2.y")
     )
-    spec = sample.judged(replace(case, frame=table, quantities=table), criteria=(sample.SHIFT,))
+    spec = sample.judged(replace(case, frames=Held(table, table)), criteria=(sample.SHIFT,))
     mark = figures(spec)[0].views[0].mark
     assert mark is not None
     assert mark.t == 5.0
@@ -238,7 +238,7 @@ def test_figure_of_a_run_that_diverged_shows_what_there_is_and_why() -> None:
 @pytest.mark.parametrize("frame", [pl.DataFrame(), pl.DataFrame({"x": [1.0]})])
 def test_case_without_channels_gives_messages_instead_of_figures(frame: pl.DataFrame) -> None:
     ended = {"kind": "error", "message": "the core refused it"}
-    spec = sample.judged(sample.case("a", frame=frame, quantities=frame, ended=ended))
+    spec = sample.judged(sample.case("a", frames=Held(frame, frame), ended=ended))
     shown = figures(spec)
     assert [view.message for figure in shown for view in figure.views] == ["the core refused it"] * 3
     assert "the core refused it" in page(sample.acceptance(spec)).text
@@ -263,7 +263,7 @@ def test_track_irregularity_is_drawn_where_the_frame_has_it() -> None:
     case = sample.case("a")
     table = case.frame.with_columns((0.001 * pl.col("t").sin()).alias("track.cross_level"))
     spec = sample.judged(
-        replace(case, frame=table, quantities=table, units={**case.units, "track.cross_level": "m"})
+        replace(case, frames=Held(table, table), units={**case.units, "track.cross_level": "m"})
     )
     (figure,) = [figure for figure in figures(spec) if figure.title == "Track irregularity"]
     assert figure.views[0].rows == ("cross level (mm)",)

@@ -45,7 +45,7 @@ def edited(old: str, new: str) -> str:
             'vehicel = "toy"',
             (
                 '4: vehicel: found an unknown key "vehicel"; allowed: condition, criterion, id, procedure, run, '
-                'set, sign_off, title, track, vehicle (did you mean "vehicle"?)'
+                'set, sign_off, test, title, track, vehicle (did you mean "vehicle"?)'
             ),
         ),
         (
@@ -72,7 +72,7 @@ def edited(old: str, new: str) -> str:
             "max_abs = 0.35",
             "max_asb = 0.35",
             (
-                '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: chain, max, max_abs, min, '
+                '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: case, chain, max, max_abs, min, '
                 'name, published, reason, signal, source, strict, unit (did you mean "max_abs"?)'
             ),
         ),
@@ -262,3 +262,51 @@ def test_the_spec_is_laid_over_the_base_track() -> None:
         "irregularity": {"kind": "bump", "height": 1.0},
     }
     assert base["length"] == 1.0
+
+
+# ---- a variant: another spec with some keys set otherwise
+
+
+def variant(text: str) -> Path:
+    path = Path("twins/sway.toml")
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_variant_is_the_spec_that_it_names_with_its_keys_set() -> None:
+    found = load(
+        variant('spec = "sway"\nmust_fail = "wheel L/V"\n[set]\n"run.speed_kmh" = 200\n"a.b" = 1.0\n')
+    )
+    speeds = found.spec.run.speeds
+    assert speeds is not None
+    assert speeds[0].resolve(1.0) == pytest.approx(200 / 3.6)
+    assert found.parameters == {"a.b": 1.0}
+    assert found.asked.shown == "twins/sway.toml"
+    assert found.document.shown == "specs/sway.toml"
+
+
+def test_a_caller_sets_over_a_variant() -> None:
+    path = variant('spec = "sway"\n[set]\n"run.speed_kmh" = 200\n')
+    speeds = load(path, {"run.speed": 10.0}).spec.run.speeds
+    assert speeds is not None
+    assert speeds[0].resolve(1.0) == 10.0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('spec = "swey"', 'twins/sway.toml:1: spec: found "swey"; .*did you mean "sway"'),
+        ('spec = "sway"\ntitel = "x"', 'twins/sway.toml:2: titel: found an unknown key "titel"'),
+        ('spec = "sway"\nset = 3', "twins/sway.toml:2: set: found no table"),
+        ("spec = 3", "twins/sway.toml:1: spec: found 3"),
+        ('spec = "./sway.toml"', "twins/sway.toml:1: spec: found .*, a variant itself"),
+        (
+            'spec = "sway"\n[set]\n"run.friction" = -1.0',
+            'twins/sway.toml:3: set."?run.friction"?: found -1.0',
+        ),
+    ],
+)
+def test_faults_of_a_variant_name_its_own_lines(text: str, message: str) -> None:
+    with pytest.raises(InputProblem, match=message):
+        load(variant(text))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,7 @@ from lmap.signals.statistic import (
     MaxAbs,
     Maximum,
     Mean,
+    Median,
     Minimum,
     PeakToPeak,
     Percentile,
@@ -195,6 +197,35 @@ def test_sliding_rms_is_that_of_the_loudest_window_less_its_own_mean() -> None:
     assert whole.value == pytest.approx(3.0 / math.sqrt(2.0), rel=4e-3)
 
 
+def test_median_and_the_larger_end_of_two_percentiles() -> None:
+    x = signal(np.concatenate((np.full(600, -3.0), np.full(401, 5.0), np.full(1, -70.0))))
+    assert Median().read(x).value == -3.0
+    assert Median(absolute=True).read(x).value == 3.0
+    ramp = signal(np.arange(-3000, 1001) * 0.01)
+    assert Percentile(percent=99.85).read(ramp).value == pytest.approx(10.0 - 0.06)
+    assert Percentile(percent=0.15).read(ramp).value == pytest.approx(-30.0 + 0.06)
+    assert Percentile(percent=99.85, both_ends=True).read(ramp).value == pytest.approx(30.0 - 0.06)
+    with pytest.raises(ValueError, match="not both"):
+        Percentile(percent=99.85, both_ends=True, absolute=True)
+
+
+def test_sliding_rms_steps_along_the_track() -> None:
+    # EN 14363's instability: 100 m, every 10 m; at 10 m/s the run is 400 m long, so 31 windows
+    x = np.where(times(40.0) >= 20.0, 2.0, 1.0) * np.sin(2.0 * math.pi * 4.0 * times(40.0))
+    reading = SlidingRms(window_m=100.0, step_m=10.0, about_mean=False).read(signal(x))
+    assert reading.curve is not None
+    assert reading.curve.height == 31
+    assert reading.value == pytest.approx(2.0 / math.sqrt(2.0), rel=1e-3)
+    assert reading.s in [pytest.approx(s) for s in range(250, 351, 10)]
+
+
+@pytest.mark.parametrize("link", [Sustained, SlidingMean, SlidingRms])
+def test_a_window_that_holds_one_sample_is_refused(link: type[Sustained | SlidingMean | SlidingRms]) -> None:
+    # its r.m.s. about its mean would be 0, and pass
+    with pytest.raises(JudgementProblem, match="holds less than two samples"):
+        link(window_s=0.004).read(signal(np.sin(times(10.0))))
+
+
 # ---- the list
 
 
@@ -206,3 +237,9 @@ def test_the_list_of_links_is_sorted_and_its_names_are_unique() -> None:
 
 def test_every_link_documents_itself() -> None:
     assert all(link.__doc__ for link in LINKS)
+
+
+def test_the_page_on_signals_names_every_link() -> None:
+    page = Path(__file__).parents[2] / "docs" / "concepts" / "signals.md"
+    text = page.read_text(encoding="utf-8")
+    assert [name for name in BY_NAME if f"`{name}`" not in text] == []

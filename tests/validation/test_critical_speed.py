@@ -34,11 +34,11 @@ def ramp(rate_kmh_s: float, step: float = 0.001) -> Case:
         f"{rate_kmh_s} km/h/s, {step} s",
         speed=400 / 3.6,
         integrator={"kind": "ros2", "step": step},
+        disturbance={"carbody.y": 0.02},
         search={
             "method": "ramp_down",
             "end_speed": 80 / 3.6,
             "deceleration": rate_kmh_s / 3.6,
-            "disturbance": {"carbody.y": 0.02},
         },
     )
 
@@ -69,11 +69,11 @@ def test_limit_cycles_end_between_the_ramps_and_the_linear_critical_speed() -> N
     diagram = case(
         "bifurcation",
         speed=250 / 3.6,
+        disturbance={"carbody.y": 0.02},
         search={
             "method": "bifurcation",
             "end_speed": 150 / 3.6,
             "speed_step": 10 / 3.6,
-            "disturbance": {"carbody.y": 0.02},
         },
     )
     ramp_reading, fold = readings([ramp(2.5), diagram])

@@ -23,7 +23,7 @@ mod module {
     #[pymodule_export]
     use crate::arrow::Frame;
     #[pymodule_export]
-    use crate::contact::equivalent_conicity;
+    use crate::contact::{Tables, equivalent_conicity};
     #[pymodule_export]
     use crate::creep::{creep_forces, kalker_coefficients};
     #[pymodule_export]

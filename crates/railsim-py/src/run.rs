@@ -11,6 +11,7 @@ use railsim::schema::Case;
 use railsim::track::irregularity::DeviationField;
 
 use crate::arrow::Frame;
+use crate::contact::{Tables, read};
 use crate::enter::{Finished, Listener, Progress, enter};
 use crate::errors::raise;
 
@@ -28,22 +29,33 @@ pub fn fingerprint() -> &'static str {
 
 /// Every fault of a case, at once.
 #[pyfunction]
-pub fn check_case(py: Python<'_>, case_json: &str) -> PyResult<()> {
-    read(py, case_json).map(drop)
+#[pyo3(signature = (case_json, tables=None))]
+pub fn check_case(py: Python<'_>, case_json: &str, tables: Option<&Tables>) -> PyResult<()> {
+    read(py, case_json, tables).map(drop)
 }
 
 /// Name, unit and meaning of every channel.
 #[pyfunction]
-pub fn channels(py: Python<'_>, case_json: &str) -> PyResult<Vec<(String, &'static str, &'static str)>> {
-    let case = read(py, case_json)?;
+#[pyo3(signature = (case_json, tables=None))]
+pub fn channels(
+    py: Python<'_>,
+    case_json: &str,
+    tables: Option<&Tables>,
+) -> PyResult<Vec<(String, &'static str, &'static str)>> {
+    let case = read(py, case_json, tables)?;
     let channels = analysis::channels(&case).map_err(|e| raise(py, e))?;
     Ok(channels.into_iter().map(|c| (c.name, c.unit, c.meaning)).collect())
 }
 
 /// Smallest and largest value of each track irregularity.
 #[pyfunction]
-pub fn track_extremes(py: Python<'_>, case_json: &str) -> PyResult<BTreeMap<&'static str, (f64, f64)>> {
-    let case = read(py, case_json)?;
+#[pyo3(signature = (case_json, tables=None))]
+pub fn track_extremes(
+    py: Python<'_>,
+    case_json: &str,
+    tables: Option<&Tables>,
+) -> PyResult<BTreeMap<&'static str, (f64, f64)>> {
+    let case = read(py, case_json, tables)?;
     let extremes = py.detach(|| {
         let track = &case.track;
         let at = KeyPath::of("track.irregularity");
@@ -54,26 +66,30 @@ pub fn track_extremes(py: Python<'_>, case_json: &str) -> PyResult<BTreeMap<&'st
     Ok(["lateral", "vertical", "cross_level", "gauge"].into_iter().zip(extremes).collect())
 }
 
-/// Runs cases on `jobs` threads; results and progress go to the callbacks.
+/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks.
 #[pyfunction]
+#[pyo3(signature = (cases, jobs, on_progress, on_done, tables=None))]
 pub fn run_cases(
     py: Python<'_>,
     cases: Vec<String>,
     jobs: NonZeroUsize,
     on_progress: Py<PyAny>,
     on_done: Py<PyAny>,
+    tables: Option<&Tables>,
 ) -> PyResult<()> {
+    // A batch shares its tables whether the caller wants them afterwards or not.
+    let tables = tables.map(|t| t.tables.clone()).unwrap_or_default();
     enter(
         py,
         cases.len(),
         jobs,
-        |index, control| analysis::run(&Case::from_json(&cases[index])?, control),
+        |index, control| {
+            let mut case = Case::from_json(&cases[index])?;
+            case.tables = tables.clone();
+            analysis::run(&case, control)
+        },
         &mut Callbacks { on_progress, on_done },
     )
-}
-
-fn read(py: Python<'_>, case_json: &str) -> PyResult<Case> {
-    Case::from_json(case_json).map_err(|e| raise(py, e))
 }
 
 /// Hands what happens to two Python functions.

@@ -26,9 +26,9 @@ fn bench(c: &mut Criterion) {
     }
     value["run"] = json!({
         "kind": "critical_speed", "speed": 400.0 / 3.6, "friction": 0.4,
-        "integrator": { "kind": "ros2", "step": 0.001 }, "output_step": 0.01,
+        "integrator": { "kind": "ros2", "step": 0.001 }, "output_step": 0.01, "disturbance": { "carbody.y": 0.02 },
         "search": {
-            "method": "ramp_down", "end_speed": 80.0 / 3.6, "deceleration": 5.0 / 3.6, "disturbance": { "carbody.y": 0.02 }
+            "method": "ramp_down", "end_speed": 80.0 / 3.6, "deceleration": 5.0 / 3.6
         }
     });
     let case = common::case(&value);

@@ -423,3 +423,60 @@ fn friction_shows_its_hysteresis_along_the_path() {
     // Beside it the springs: 8 x 1.5e5, pivots 2 x 4e6 N/m.
     compare("springs, N", force[10] - 8e3, 0.02 * (8.0 * 1.5e5 + 2.0 * 4e6), 0.01);
 }
+
+/// The locomotive over a vertical curve of 500 m: every mass m at height h is held on a circle of radius R + h (crest) or R - h
+/// (sag), so the rails carry m (g cos(gradient) -+ (V/R)^2 (R +- h)) once the bounce that it is met with has died away.
+#[test]
+fn a_vehicle_on_a_vertical_curve_feels_v2_over_r() {
+    let (g, speed) = (9.80665, 15.0);
+    for radius in [500.0_f64, -500.0] {
+        let angle = 0.2_f64.atan();
+        let (foot, length) = (30.0, radius.abs() * angle);
+        let mut value = common::coco134();
+        value["track"]["length"] = json!(foot + length);
+        value["track"]["layout"] = json!([
+            { "kind": "tangent", "length": foot },
+            { "kind": "clothoid", "length": length },
+            { "kind": "tangent", "length": 30.0, "gradient": -0.2 * radius.signum() }
+        ]);
+        value["run"]["speed"] = json!(speed);
+        let outcome = run(&common::case(&value), &Free).unwrap();
+        assert_eq!(outcome.ended, Ended::EndOfTrack);
+        let s = common::column(&outcome.columns, "s");
+        let wheels: Vec<&[f64]> = (1..=6)
+            .flat_map(|w| ["left", "right"].map(|side| format!("ws{w}.{side}.Q")))
+            .map(|name| common::column(&outcome.columns, &name))
+            .collect();
+        // The reference is the vehicle's centre; the last two periods of the bounce of 1.12 Hz.
+        let last: Vec<usize> = (s.len() - (2.0 / 1.12 / 0.005) as usize..s.len()).collect();
+        let mean = |f: &dyn Fn(usize) -> f64| last.iter().map(|i| f(*i)).sum::<f64>() / last.len() as f64;
+        let weight = mean(&|i| 134_000.0 * g * ((s[i] - foot) / radius).cos());
+        let load = mean(&|i| wheels.iter().map(|q| q[i]).sum::<f64>());
+        // Heights of the masses, of 134 t: body 1.9 m, bogies 0.7 m, wheelsets 0.53 m, some 1.5 m in all.
+        let theirs = -134_000.0 * (speed / radius).powi(2) * (radius + 1.5);
+        println!("R {radius} m: {load:.0} N where {weight:.0} N weigh");
+        compare("change of load by the vertical curve, N", load - weight, theirs, 0.02);
+    }
+}
+
+/// Widened by the layout or by the track's own gauge: the same track.
+#[test]
+fn a_gauge_widened_by_the_layout_is_the_wider_gauge() {
+    let balance = |gauge: f64, widening: f64| {
+        let mut value = common::coco134();
+        value["track"]["gauge"] = json!(gauge);
+        value["track"]["layout"] =
+            json!([{ "kind": "curve", "length": 200.0, "radius": 400.0, "widening_mm": widening }]);
+        value["run"] = json!({ "kind": "equilibrium", "speed": 15.0, "friction": 0.4 });
+        let outcome = run(&common::case(&value), &Free).unwrap();
+        ["ws1.y", "ws1.left.Y", "ws1.right.Y", "ws3.y"].map(|name| row(&outcome, name, 0))
+    };
+    let (plain, wide, own) = (balance(1.435, 0.0), balance(1.435, 8.0), balance(1.443, 0.0));
+    println!("1435 mm {plain:?}, widened by 8 mm {wide:?}, 1443 mm {own:?}");
+    // The leading axle runs 4 mm further out to its rail.
+    assert!((wide[0] - plain[0]).abs() > 3e-3);
+    for (a, b) in wide.iter().zip(own) {
+        // Two tables, each 0.1 mm from node to node, built about different places.
+        assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+    }
+}

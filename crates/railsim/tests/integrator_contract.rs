@@ -121,6 +121,17 @@ impl System for Driven {
     }
 }
 
+/// The examples with control that never steps back: then the controlled scheme is Heun's.
+fn uncontrolled() -> Vec<Integrator> {
+    let loose = |integrator| match integrator {
+        Integrator::HeunControlled { step, halvings, .. } => {
+            Integrator::HeunControlled { step, tolerance: 1e3, halvings }
+        }
+        other => other,
+    };
+    Integrator::examples().into_iter().map(loose).collect()
+}
+
 fn run<S: System>(
     integrator: &Integrator,
     system: &mut S,
@@ -146,7 +157,7 @@ fn error_at_end(integrator: &Integrator, jacobian: Jacobian, steps: usize) -> f6
 
 #[test]
 fn observed_order_is_the_stated_one_whatever_the_jacobian() {
-    for integrator in Integrator::examples() {
+    for integrator in uncontrolled() {
         for jacobian in [Jacobian::Exact, Jacobian::Wrong, Jacobian::Zero, Jacobian::None] {
             let errors = [100, 200, 400].map(|n| error_at_end(&integrator, jacobian, n));
             let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
@@ -184,7 +195,7 @@ impl System for Polynomial {
 
 #[test]
 fn exact_for_polynomials_of_its_order_and_not_beyond() {
-    for integrator in Integrator::examples() {
+    for integrator in uncontrolled() {
         for degree in 1..=5 {
             let p = |t: f64| (t - 0.3).powi(degree);
             let mut x = [p(0.1)];
@@ -238,12 +249,12 @@ fn energy_of_an_undamped_oscillator_drifts_as_the_theory_says() {
     // Amplification |R(iy)|^2 per step: heun 1 + y^4/4; rk4 1 - y^6/72 + y^8/576; ros2 1 - (g y)^4/(1 + (g y)^2)^2.
     let w = std::f64::consts::TAU;
     let mut system = Oscillator::new(w, 0.0);
-    for integrator in Integrator::examples() {
+    for integrator in uncontrolled() {
         let h = 0.01;
         let y = w * h;
         let gy2 = (railsim::integrator::ROS2_GAMMA * y).powi(2);
         let gain: f64 = match integrator {
-            Integrator::Heun { .. } => 1.0 + y.powi(4) / 4.0,
+            Integrator::Heun { .. } | Integrator::HeunControlled { .. } => 1.0 + y.powi(4) / 4.0,
             Integrator::Rk4 { .. } => 1.0 - y.powi(6) / 72.0 + y.powi(8) / 576.0,
             Integrator::Ros2 { .. } => 1.0 - gy2 * gy2 / ((1.0 + gy2) * (1.0 + gy2)),
         };
@@ -282,12 +293,12 @@ fn a_run_split_in_two_is_the_whole_run_bit_for_bit() {
 
 #[test]
 fn work_is_as_documented() {
-    for integrator in Integrator::examples() {
+    for integrator in uncontrolled() {
         let mut x = Driven::solution(0.0);
         let stepper = run(&integrator, &mut Driven::new(Jacobian::Exact), &mut x, 0.0, 0.01, 50);
         let work = stepper.statistics();
         let stages = match integrator {
-            Integrator::Heun { .. } | Integrator::Ros2 { .. } => 2,
+            Integrator::Heun { .. } | Integrator::HeunControlled { .. } | Integrator::Ros2 { .. } => 2,
             Integrator::Rk4 { .. } => 4,
         };
         assert_eq!(integrator.stages(), stages);
@@ -295,6 +306,100 @@ fn work_is_as_documented() {
         let factorisations = if matches!(integrator, Integrator::Ros2 { .. }) { 50 } else { 0 };
         assert_eq!(work.factorisations, factorisations);
     }
+}
+
+#[test]
+fn control_holds_the_error_to_its_tolerance_at_the_order_of_the_scheme() {
+    // e = c h^2 <= tolerance, so that h and the work go with the root of the tolerance and the error with the tolerance: the
+    // observed order is that of the error against the work.
+    let steps = 20;
+    let mut found = Vec::new();
+    for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
+        let scheme = Integrator::HeunControlled { step: 0.1, tolerance, halvings: 12 };
+        let mut x = Driven::solution(0.0);
+        let stepper = run(&scheme, &mut Driven::new(Jacobian::None), &mut x, 0.0, 0.1, steps);
+        let error = x.iter().zip(Driven::solution(2.0)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let work = stepper.statistics();
+        println!("tolerance {tolerance:e}: error {error:.2e}, {work:?}");
+        assert_eq!(work.steps, steps as u64);
+        assert!(work.rejected > 0 && error < 20.0 * tolerance);
+        found.push((error, work.rhs_evaluations as f64));
+    }
+    let (first, last) = (found[0], found[found.len() - 1]);
+    let order = (first.0 / last.0).ln() / (last.1 / first.1).ln();
+    println!("observed order: {order:.2}");
+    // The lengths go in powers of two, so that the error moves by up to a factor four within a tolerance.
+    assert!((order - 2.0).abs() < 0.3, "{order}");
+}
+
+#[test]
+fn control_keeps_a_stiff_mode_bounded_far_beyond_the_limit_of_heun() {
+    // A track mass: 2500 rad/s, damping ratio 0.7, which Heun takes to 0.5 ms.
+    for h in [1e-3, 5e-3] {
+        let tolerance = 1e-4;
+        let mut x = [1e-3, 0.0];
+        let scheme = Integrator::HeunControlled { step: h, tolerance, halvings: 12 };
+        let stepper = run(&scheme, &mut Oscillator::new(2500.0, 0.7), &mut x, 0.0, h, 40);
+        let mut plain = [1e-3, 0.0];
+        run(&Integrator::Heun { step: h }, &mut Oscillator::new(2500.0, 0.7), &mut plain, 0.0, h, 40);
+        println!("h {h}: controlled {x:?} {:?}, heun {plain:?}", stepper.statistics());
+        // What is left is what the control does not see: local errors of the tolerance at most.
+        assert!(x[1].abs() <= 10.0 * tolerance, "{x:?}");
+        assert!(!(plain[1].abs() < 1e3), "{plain:?}");
+    }
+}
+
+/// x' = 1 up to t = 1/3, then -1000; counts what it is told.
+#[derive(Default)]
+struct Jump {
+    rejected: u64,
+}
+
+impl System for Jump {
+    fn size(&self) -> usize {
+        2
+    }
+
+    fn rhs(&mut self, t: f64, _: &[f64], dx: &mut [f64]) {
+        dx[0] = if t < 1.0 / 3.0 { 1.0 } else { -1000.0 };
+        dx[1] = 0.0;
+    }
+
+    fn reject(&mut self) {
+        self.rejected += 1;
+    }
+}
+
+#[test]
+fn control_steps_back_at_a_jump_alone_and_says_where_it_cannot_follow() {
+    let scheme = |halvings| Integrator::HeunControlled { step: 0.1, tolerance: 1e-2, halvings };
+    let mut system = Jump::default();
+    let mut x = [0.0, 7.0];
+    let stepper = run(&scheme(14), &mut system, &mut x, 0.0, 0.1, 10);
+    let work = stepper.statistics();
+    let exact = 1.0 / 3.0 - 1000.0 * (1.0 - 1.0 / 3.0);
+    println!("{} against {exact}, {work:?}", x[0]);
+    // The one step that meets the jump is right to the tolerance; a scheme without control errs by up to 1001 h/2 = 50.
+    assert!((x[0] - exact).abs() < 1e-2 && x[1] == 7.0);
+    assert_eq!(system.rejected, work.rejected);
+    // Nine steps at once, one in parts: down to the jump and up again in doublings, at most two parts for each of 14 lengths
+    // either way.
+    assert!(work.rejected > 0 && work.rhs_evaluations < 2 * 9 + 14 * 2 * 2 * 2 + 14, "{work:?}");
+
+    let mut x = [0.0, 7.0];
+    let mut stepper = Stepper::new(&scheme(5), 2, &[]);
+    for i in 0..3 {
+        assert_eq!(stepper.step(&mut Jump::default(), 0.1 * f64::from(i), &mut x, 0.1), StepEnd::Done);
+    }
+    let end = stepper.step(&mut Jump::default(), 0.1 * 3.0, &mut x, 0.1);
+    assert_eq!(end, StepEnd::OverTolerance { element: 0 });
+    // Up to the last good part, 10/32 of the step in: 1/3 is between 10/32 and 11/32 of it.
+    assert!((x[0] - (0.3 + 0.1 * 10.0 / 32.0)).abs() < 1e-12, "{x:?}");
+    assert_eq!(stepper.statistics().steps, 3);
+    // And a number that is no number is never within tolerance.
+    let mut stepper = Stepper::new(&scheme(5), 2, &[]);
+    let end = stepper.step(&mut Oscillator::new(f64::NAN, 0.1), 0.0, &mut [1.0, 2.0], 0.1);
+    assert!(matches!(end, StepEnd::OverTolerance { .. }), "{end:?}");
 }
 
 #[test]

@@ -159,7 +159,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "[condition.laden]",
         "[parameters.run]\nspeed = 3.0\n\n[condition.laden]",
         "21: vehicle.parameters.run: found the group name run; allowed: any name but condition, run, \
-         track, vehicle (on the command line these are keys of the spec)",
+         test, track, vehicle (on the command line these are keys of the spec)",
     ),
     (
         "design_condition = \"laden\"",
@@ -345,13 +345,13 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/integrator/kind",
             json!("huen"),
-            "run.integrator.kind: found \"huen\"; allowed: \"heun\", \"rk4\", \"ros2\" (did you mean \
+            "run.integrator.kind: found \"huen\"; allowed: \"heun\", \"heun_controlled\", \"rk4\", \"ros2\" (did you mean \
          heun?)",
         ),
         (
             "/run/integrator",
             json!("heun"),
-            "run.integrator: found \"heun\"; allowed: a table with kind = \"heun\", \"rk4\", \"ros2\"",
+            "run.integrator: found \"heun\"; allowed: a table with kind = \"heun\", \"heun_controlled\", \"rk4\", \"ros2\"",
         ),
         (
             "/run/integrator",
@@ -369,7 +369,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             json!("tiem"),
             "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\", \"lint\" (did you mean time?)",
         ),
-        ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 m"),
+        ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 and <= 1000000.0 m"),
         (
             "/track/rail_profile",
             json!("hed"),
@@ -423,7 +423,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             "/track/layout",
             json!([{ "kind": "curve", "length": 50, "radius": 300, "cant": 20 }]),
             "track.layout[0].cant: found an unknown key; allowed: cant_mm, curvature, gradient, kind, \
-         length, radius (did you mean cant_mm?)",
+         length, radius, widening_mm (did you mean cant_mm?)",
         ),
         (
             "/track/layout",
@@ -450,10 +450,15 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
              mean fastsim?)",
         ),
         (
+            "/run/disturbance",
+            json!({ "carbody.y": "x" }),
+            "run.disturbance.carbody.y: found \"x\"; allowed: a number",
+        ),
+        (
             "/run/spede",
             json!(3),
-            "run.spede: found an unknown key; allowed: contact, creep, friction, gravity, hold, integrator, kind, \
-         load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
+            "run.spede: found an unknown key; allowed: contact, creep, disturbance, friction, gravity, hold, integrator, \
+         kind, load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
         ),
     ]
 }

@@ -5,7 +5,8 @@
 use railsim::error::{Error, KeyPath};
 use railsim::math::fft;
 use railsim::track::irregularity::{
-    Channel, Deviation, DeviationField, Form, GaugeSeries, Irregularity, Level, Psd, Shape, Wave, spectrum,
+    Channel, Density, Deviation, DeviationField, Form, GaugeSeries, Irregularity, Level, Measured, Psd,
+    Shape, ShapeChannel, Wave, spectrum,
 };
 
 fn field(written: &[Irregularity], length: f64) -> DeviationField {
@@ -26,6 +27,8 @@ fn class_6(seed: u64, gauge: GaugeSeries) -> Psd {
         form: Form::FraHamidYang,
         class: Some(6),
         level: None,
+        density: None,
+        density_rad: None,
         wavelengths: [1.5, 40.0],
         seed,
         period: 1000.0,
@@ -50,6 +53,16 @@ fn every_example_is_free_of_faults_and_survives_a_round_trip() {
     }
 }
 
+/// Where the slope may jump: ends and middles of the waves of a sharp shape.
+fn corners(example: &Irregularity) -> Vec<f64> {
+    match example {
+        Irregularity::Shape(shape) if shape.rounding.unwrap_or(0.0) == 0.0 => {
+            (0..=2 * shape.waves).map(|k| shape.start + 0.5 * shape.length * f64::from(k)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
 #[test]
 fn slopes_agree_with_finite_differences() {
     for example in Irregularity::examples() {
@@ -57,11 +70,11 @@ fn slopes_agree_with_finite_differences() {
             let at = KeyPath::of("track.irregularity");
             let field =
                 DeviationField::new(std::slice::from_ref(&example), 400.0, 0.3 * fade, fade, &at).unwrap();
-            let kinked = matches!(&example, Irregularity::Shape(Shape { shape: Wave::Sine, .. }));
+            let corners = corners(&example);
             let (h, mut worst, mut largest) = (1e-5, 0.0_f64, 0.0_f64);
             for i in 1..4000 {
                 let s = 0.0997 * f64::from(i);
-                if kinked && [50.0, 50.0 + 5.0 * 11.887].iter().any(|kink: &f64| (kink - s).abs() < 2.0 * h) {
+                if corners.iter().any(|corner| (corner - s).abs() < 2.0 * h) {
                     continue;
                 }
                 let (a, b) = (values(field.at(s - h)), values(field.at(s + h)));
@@ -167,15 +180,11 @@ const HAND: [f64; 10] = [
 #[test]
 fn power_of_a_realisation_in_each_band_is_the_laws() {
     for example in Psd::examples() {
-        let grade = match (example.class, example.level) {
-            (Some(class), _) => usize::try_from(class).unwrap(),
-            (_, Some(Level::Low)) => 1,
-            _ => 2,
-        };
         let n = 1 << 14;
         let field = field(&[Irregularity::Psd(example.clone())], example.period);
         for channel in Channel::ALL {
-            if channel == Channel::Gauge && example.gauge == GaugeSeries::CrossLevel {
+            let smooth = example.spectrum(channel, 1.0 / example.wavelengths[1]) == 0.0;
+            if smooth || channel == Channel::Gauge && example.gauge == GaugeSeries::CrossLevel {
                 continue;
             }
             let sample = |i: usize| values(field.at(example.period * i as f64 / n as f64))[channel.index()];
@@ -200,7 +209,7 @@ fn power_of_a_realisation_in_each_band_is_the_laws() {
                 let law: f64 = (0..=cells)
                     .map(|i| {
                         let weight = if i == 0 || i == cells { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                        weight * spectrum(example.form, grade, channel, f0 + f64::from(i) * step)
+                        weight * example.spectrum(channel, f0 + f64::from(i) * step)
                     })
                     .sum::<f64>()
                     * step
@@ -313,11 +322,9 @@ fn fading_is_continuous_with_level_ends_and_leaves_the_rest_alone() {
 
 #[test]
 fn irregularities_add_up_and_scale() {
-    let [bounce, kink, roll] = <[Shape; 3]>::try_from(Shape::examples()).unwrap();
-    let all = [bounce, kink, roll].map(Irregularity::Shape);
     let psd = Irregularity::Psd(class_6(1, GaugeSeries::Independent));
     let twice = Irregularity::Psd(Psd { scale: 2.0, ..class_6(1, GaugeSeries::Independent) });
-    let mut list = all.to_vec();
+    let mut list: Vec<_> = Shape::examples().into_iter().map(Irregularity::Shape).collect();
     list.push(psd.clone());
     let (sum, one, two) = (field(&list, 400.0), field(&[psd], 400.0), field(&[twice], 400.0));
     let parts: Vec<DeviationField> = list.iter().map(|i| field(std::slice::from_ref(i), 400.0)).collect();
@@ -369,6 +376,241 @@ fn the_papers_bumps_have_their_height_and_place() {
     assert_eq!(roll.at(24.0 - 40.0).cross_level, 0.0);
 }
 
+fn shape(shape: Wave, channel: ShapeChannel, start: f64, length: f64) -> Shape {
+    Shape {
+        shape,
+        channel,
+        start,
+        length,
+        height: None,
+        dip_angle: None,
+        rise: None,
+        rounding: None,
+        waves: 1,
+        period: None,
+        scale: 1.0,
+    }
+}
+
+/// The field of shapes alone, without fading.
+fn shapes<const N: usize>(written: [Shape; N]) -> DeviationField {
+    field(&written.map(Irregularity::Shape), 400.0)
+}
+
+#[test]
+fn a_flat_hump_rises_stays_and_falls() {
+    // Rise 1 - cos over 2 m to 25 mm, level over 10 m, fall over 2 m; both rails, up.
+    let hump = Shape {
+        height: Some(0.025),
+        rise: Some(2.0),
+        ..shape(Wave::FlatHump, ShapeChannel::Vertical, 100.0, 14.0)
+    };
+    let hump = shapes([hump]);
+    for (s, up) in [
+        (100.0, 0.0),
+        (101.0, 12.5),
+        (102.0, 25.0),
+        (107.0, 25.0),
+        (112.0, 25.0),
+        (113.0, 12.5),
+        (114.0, 0.0),
+    ] {
+        let d = hump.at(s);
+        assert!((d.z + 1e-3 * up).abs() < 1e-15, "{s}: {}", d.z);
+        // Half up its slope is (pi/2) height/rise.
+        let slope = match s {
+            101.0 => -0.5 * std::f64::consts::PI * 0.025 / 2.0,
+            113.0 => 0.5 * std::f64::consts::PI * 0.025 / 2.0,
+            _ => 0.0,
+        };
+        assert!((d.dz_ds - slope).abs() < 1e-15, "{s}: {}", d.dz_ds);
+    }
+    // The same as a constant gauge of 1460.5 mm on a track of 1435 mm.
+    let wide = Shape {
+        height: Some(0.0255),
+        rise: Some(5.0),
+        ..shape(Wave::FlatHump, ShapeChannel::Gauge, 10.0, 200.0)
+    };
+    let wide = shapes([wide]);
+    for s in [15.0, 100.0, 205.0] {
+        assert_eq!((wide.at(s).gauge, wide.at(s).dgauge_ds), (0.0255, 0.0));
+    }
+    assert_eq!((wide.at(10.0).gauge, wide.at(210.0).gauge), (0.0, 0.0));
+}
+
+#[test]
+fn a_rounded_kink_is_the_moving_average_of_the_sharp_one() {
+    let kink = |rounding| {
+        let kink = Shape {
+            height: Some(0.015),
+            rounding: Some(rounding),
+            waves: 3,
+            ..shape(Wave::Kink, ShapeChannel::Lateral, 50.0, 10.0)
+        };
+        shapes([kink])
+    };
+    let (sharp, width) = (kink(0.0), 1.6);
+    let rounded = kink(width);
+    // A (1 - |x|/c)+ with A 15 mm, c 5 m.
+    for (s, mm) in
+        [(50.0, 0.0), (52.5, 7.5), (55.0, 15.0), (57.5, 7.5), (60.0, 0.0), (65.0, 15.0), (80.0, 0.0)]
+    {
+        assert!((sharp.at(s).y - 1e-3 * mm).abs() < 1e-15, "{s}");
+    }
+    // The peak is cut by (change of slope) width/8.
+    assert!((rounded.at(55.0).y - (0.015 - 0.006 * width / 8.0)).abs() < 1e-15);
+    let n = 4000;
+    for i in 0..700 {
+        let s = 48.0 + 0.0487 * f64::from(i);
+        let mean: f64 =
+            (0..n).map(|k| sharp.at(s + width * ((f64::from(k) + 0.5) / f64::from(n) - 0.5)).y).sum::<f64>()
+                / f64::from(n);
+        // The midpoint rule at a corner: (change of slope) (width/n)^2/8/width.
+        assert!((rounded.at(s).y - mean).abs() < 1e-9, "{s}: {} {mean}", rounded.at(s).y);
+    }
+    assert_eq!((rounded.at(49.19).y, rounded.at(80.81).y), (0.0, 0.0));
+}
+
+#[test]
+fn a_dipped_weld_has_its_angle_and_a_rounded_joint_no_corner() {
+    let weld = |rounding| Shape {
+        dip_angle: Some(0.02),
+        rounding,
+        ..shape(Wave::DippedWeld, ShapeChannel::Vertical, 99.0, 2.0)
+    };
+    let sharp = shapes([weld(None)]);
+    // The angle between both sides is the whole dip angle; down in the middle by 0.02 x 2 m/8.
+    let (before, after) = (sharp.at(100.0 - 1e-9).dz_ds, sharp.at(100.0 + 1e-9).dz_ds);
+    assert!((before - 0.01).abs() < 1e-10 && (after + 0.01).abs() < 1e-10, "{before} {after}");
+    assert!((sharp.at(100.0).z - 0.005).abs() < 1e-15);
+    for end in [99.0, 101.0] {
+        assert!(sharp.at(end).z.abs() < 1e-15 && sharp.at(end).dz_ds.abs() < 1e-15);
+    }
+    let joints = |rounding| Shape {
+        height: Some(0.01905),
+        rounding,
+        waves: 10,
+        ..shape(Wave::RectifiedSine, ShapeChannel::Vertical, 50.0, 11.887)
+    };
+    let rail = shapes([joints(None)]);
+    assert!((rail.at(50.0 + 2.5 * 11.887).z + 0.01905).abs() < 1e-15);
+    assert!(rail.at(50.0 + 3.0 * 11.887).z.abs() < 1e-15);
+    let quarter = -0.01905 * (0.25 * std::f64::consts::PI).sin();
+    assert!((rail.at(50.0 + 4.25 * 11.887).z - quarter).abs() < 1e-15);
+    // Rounded, both are continuous in slope across every corner and the same away from it.
+    for (rounded, sharp, corners) in [
+        (shapes([weld(Some(0.2))]), sharp, vec![100.0]),
+        (shapes([joints(Some(0.4))]), rail, (0..=10).map(|k| 50.0 + f64::from(k) * 11.887).collect()),
+    ] {
+        for corner in corners {
+            let jump = rounded.at(corner + 1e-9).dz_ds - rounded.at(corner - 1e-9).dz_ds;
+            assert!(jump.abs() < 1e-9, "{corner}: {jump}");
+            for d in [-0.21, 0.21] {
+                assert!((rounded.at(corner + d).z - sharp.at(corner + d).z).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn one_rail_moves_alone_and_staggered_rails_twist_the_track() {
+    let rails = |d: Deviation| {
+        [d.z - 0.5 * d.cross_level, d.z + 0.5 * d.cross_level, d.y - 0.5 * d.gauge, d.y + 0.5 * d.gauge]
+    };
+    let [left_z, right_z, left_y, right_y] = [0, 1, 2, 3];
+    for (channel, moved, sign) in [
+        (ShapeChannel::LeftVertical, left_z, -1.0),
+        (ShapeChannel::RightVertical, right_z, -1.0),
+        (ShapeChannel::LeftLateral, left_y, 1.0),
+        (ShapeChannel::RightLateral, right_y, 1.0),
+    ] {
+        let bump = Shape { height: Some(0.02), ..shape(Wave::Versine, channel, 40.0, 12.0) };
+        let found = rails(shapes([bump]).at(46.0));
+        for (rail, value) in found.into_iter().enumerate() {
+            let expected = if rail == moved { sign * 0.02 } else { 0.0 };
+            assert!((value - expected).abs() < 1e-16, "{channel:?}: {found:?}");
+        }
+    }
+    // Left z(x), right z(x - L/2): in the middle the rails stand in opposite phase.
+    let (length, height) = (13.7, Some(0.02));
+    let wave = |channel, start| Shape { height, waves: 5, ..shape(Wave::Versine, channel, start, length) };
+    let field = shapes([
+        wave(ShapeChannel::LeftVertical, 100.0),
+        wave(ShapeChannel::RightVertical, 100.0 + 0.5 * length),
+    ]);
+    for i in 0..100 {
+        let s = 100.0 + 0.61 * f64::from(i);
+        let z = |x: f64| {
+            if (0.0..5.0 * length).contains(&x) {
+                -0.01 * (1.0 - (std::f64::consts::TAU * x / length).cos())
+            } else {
+                0.0
+            }
+        };
+        let [left, right, ..] = rails(field.at(s));
+        assert!((left - z(s - 100.0)).abs() < 1e-15 && (right - z(s - 100.0 - 0.5 * length)).abs() < 1e-15);
+    }
+    // Half a wave in, the left rail is 20 mm high, the right one low: cross-level 20 mm, centre 10 mm.
+    let d = field.at(100.0 + 1.5 * length);
+    assert!((d.cross_level - 0.02).abs() < 1e-15 && (d.z + 0.01).abs() < 1e-15);
+}
+
+#[test]
+fn a_key_that_the_form_needs_or_has_no_use_for_is_named() {
+    let at = KeyPath::of("track.irregularity");
+    let told = |shape: Shape| -> Vec<String> {
+        Irregularity::Shape(shape).faults(&at).iter().map(|f| f.to_string()).collect()
+    };
+    let plain = |wave| shape(wave, ShapeChannel::Vertical, 10.0, 10.0);
+    let with = |wave| Shape { height: Some(0.02), ..plain(wave) };
+    assert_eq!(
+        told(plain(Wave::Versine)),
+        ["track.irregularity.height: found nothing; allowed: a number with shape = \"versine\""]
+    );
+    assert_eq!(
+        told(Shape { rise: Some(2.0), ..with(Wave::Versine) }),
+        ["track.irregularity.rise: found it with \"versine\"; allowed: this key with shape = \"flat_hump\""]
+    );
+    assert_eq!(
+        told(with(Wave::FlatHump)),
+        ["track.irregularity.rise: found nothing; allowed: a number with shape = \"flat_hump\""]
+    );
+    assert_eq!(
+        told(Shape { rise: Some(6.0), ..with(Wave::FlatHump) }),
+        ["track.irregularity.rise: found 6; allowed: above 0 m, at most 5 m, half the length"]
+    );
+    assert_eq!(
+        told(with(Wave::Kink)),
+        ["track.irregularity.rounding: found nothing; allowed: a number with shape = \"kink\""]
+    );
+    assert_eq!(
+        told(Shape { rounding: Some(0.1), rise: Some(1.0), ..with(Wave::FlatHump) }),
+        [
+            "track.irregularity.rounding: found it with \"flat_hump\"; allowed: this key with shape = \"sine\", \
+             \"rectified_sine\", \"kink\", \"dipped_weld\""
+        ]
+    );
+    assert_eq!(
+        told(Shape { rounding: Some(7.0), ..with(Wave::Kink) }),
+        ["track.irregularity.rounding: found 7; allowed: from 0 to 5 m, half the length of a wave"]
+    );
+    assert_eq!(
+        told(Shape { dip_angle: Some(20.0), ..plain(Wave::DippedWeld) }),
+        ["track.irregularity.dip_angle: found 20; allowed: from -0.2 to 0.2 rad (a weld of 20 mrad is 0.02)"]
+    );
+    assert_eq!(
+        told(Shape { dip_angle: Some(0.02), ..with(Wave::DippedWeld) }),
+        [
+            "track.irregularity.height: found it with \"dipped_weld\"; allowed: this key with shape = \"versine\", \
+             \"sine\", \"rectified_sine\", \"flat_hump\", \"kink\""
+        ]
+    );
+    assert_eq!(
+        told(Shape { rounding: Some(1.0), period: Some(10.5), ..with(Wave::Kink) }),
+        ["track.irregularity.period: found 10.5; allowed: 11 m or more, the length of the group"]
+    );
+}
+
 #[test]
 fn all_faults_are_collected_with_their_keys() {
     let bad_psd = Psd {
@@ -380,7 +622,8 @@ fn all_faults_are_collected_with_their_keys() {
         ..class_6(1, GaugeSeries::Independent)
     };
     let erri = Psd { form: Form::Erri, period: 1.0, ..class_6(1, GaugeSeries::Independent) };
-    let bad_shape = Shape { length: -3.0, waves: 0, height: f64::INFINITY, ..Shape::examples().remove(0) };
+    let bad_shape =
+        Shape { length: -3.0, waves: 0, height: Some(f64::INFINITY), ..Shape::examples().remove(0) };
     let crowded = Shape { period: Some(30.0), ..Shape::examples().remove(0) };
     let written = [
         Irregularity::Psd(bad_psd.clone()),
@@ -424,5 +667,217 @@ fn all_faults_are_collected_with_their_keys() {
     assert_eq!(
         message,
         "track.irregularity.period: found 10000000 m; allowed: at most 78643 m with a shortest wavelength of 1.5 m"
+    );
+}
+
+fn record(text: &str) -> Measured {
+    Measured {
+        file: "line_12.csv".into(),
+        sha256: None,
+        text: Some(text.into()),
+        start: 0.0,
+        repeat_blend: None,
+        scale: 1.0,
+    }
+}
+
+#[test]
+fn a_measured_track_passes_through_its_samples_in_their_units_and_signs() {
+    // Every 0.1 m and unevenly; places in km, deviations in mm and inches, a column that is not ours.
+    let wave = |s: f64| 4.0 * (s / 5.0).sin();
+    let places: Vec<f64> = (0..1500).map(|i| 0.1 * f64::from(i) + 0.03 * f64::from(i % 3)).collect();
+    let lines: String = places
+        .iter()
+        .map(|s| format!("{:.9},{:.9},x,{:.9},{:.9}\n", s / 1000.0, wave(*s), -0.1 * wave(*s), 0.5))
+        .collect();
+    let text = format!("# measured\n\ns_km,vertical_mm,remark,left_lateral_in,gauge_mm\n{lines}");
+    let field = field(&[Irregularity::Measured(Measured { start: 7.0, scale: 2.0, ..record(&text) })], 140.0);
+    for s in places.iter().skip(1).step_by(7) {
+        let d = field.at(s + 7.0);
+        let left = 2.0 * 0.0254 * -0.1 * wave(*s);
+        let expected = [0.5 * left, -2e-3 * wave(*s), 0.0, 1e-3 - left];
+        for (ours, theirs) in values(d).into_iter().zip(expected) {
+            // Written with nine digits behind the point, of mm, inches and km.
+            assert!((ours - theirs).abs() < 1e-9, "{s}: {ours} {theirs}");
+        }
+    }
+    // Between them it errs by some third of (step)^3 times the third derivative/9 sqrt 3.
+    for i in 0..500 {
+        let s = 10.0 + 0.251 * f64::from(i);
+        let d = field.at(s + 7.0);
+        assert!((d.z + 2e-3 * wave(s)).abs() < 1e-7, "{s}: {} {}", d.z, -2e-3 * wave(s));
+        assert!((d.dz_ds + 8e-3 / 5.0 * (s / 5.0).cos()).abs() < 2e-6, "{s}");
+    }
+    // Held outside.
+    assert_eq!((field.at(-30.0).gauge, field.at(-30.0).dgauge_ds), (field.at(7.0).gauge, 0.0));
+}
+
+#[test]
+fn a_repeated_record_passes_smoothly_from_its_end_into_its_start() {
+    let example = Measured::examples().remove(1);
+    let (blend, start) = (example.repeat_blend.unwrap(), example.start);
+    let length = 0.25 * 1999.0;
+    let period = length - blend;
+    let field = field(&[Irregularity::Measured(example)], 2000.0);
+    // Between the passages the record repeats.
+    for s in [start + blend + 1.0, start + 200.0, start + period - 1.0] {
+        for (a, b) in values(field.at(s)).into_iter().zip(values(field.at(s + 2.0 * period))) {
+            assert!((a - b).abs() < 1e-12, "{s}");
+        }
+    }
+    // Across both ends of the passage value and slope are continuous, though the record's ends differ by 150 mm.
+    for seam in [start + period, start + period + blend, start + 2.0 * period] {
+        let (a, b) = (field.at(seam - 1e-7), field.at(seam + 1e-7));
+        for (a, b) in values(a).into_iter().zip(values(b)).chain(slopes(a).into_iter().zip(slopes(b))) {
+            assert!((a - b).abs() < 1e-7, "{seam}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_record_is_told_with_its_line() {
+    let told = |measured: Measured, length: f64| -> Vec<String> {
+        let at = KeyPath::of("track.irregularity");
+        match DeviationField::new(&[Irregularity::Measured(measured)], length, 0.0, 0.0, &at) {
+            Err(Error::Input(faults)) => faults.iter().map(ToString::to_string).collect(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let names = "s_m and lateral_mm, vertical_mm, cross_level_mm, gauge_mm, left_vertical_mm, ...";
+    let file = "track.irregularity.file: found \"line_12.csv\", ";
+    let good = "s_m,vertical_mm\n0,1\n10,2\n20,1\n";
+    for (text, message) in [
+        ("", "an empty file; allowed: a line of column names, then lines of numbers".to_owned()),
+        (
+            "place,vertical_mm\n0,1\n1,2\n",
+            format!(
+                "line 1: no column of places (or several): place,vertical_mm; allowed: {names} (a column's name ends in its \
+                 unit: s_m, s_km)"
+            ),
+        ),
+        (
+            "# top\ns_m,profile_mm\n0,1\n",
+            format!("line 2: no column of a channel: s_m,profile_mm; allowed: {names}"),
+        ),
+        (
+            "s_m,gauge_mm,gauge_in\n0,1,1\n",
+            "line 1: two columns of the same channel: s_m,gauge_mm,gauge_in; allowed: one column for each channel".into(),
+        ),
+        (
+            "s_m,vertical_mm\n0,1\n10,2\n10,3\n",
+            "line 4: place 10 m after 10 m; allowed: places that increase from line to line".into(),
+        ),
+        ("s_m,vertical_mm\n0,1\n10,two\n", "line 3: \"two\"; allowed: a number in every column".into()),
+        ("s_m,vertical_mm\n0,1\n10,nan\n", "line 3: \"nan\"; allowed: a number in every column".into()),
+        (
+            "s_m,vertical_mm\n0,1\n10\n",
+            "line 3: 1 columns where the first line names 2; allowed: a number in every column".into(),
+        ),
+        (
+            "s_m,gauge_mm\n0,1435\n10,1436\n",
+            "line 2: a deviation of 1.435 m; allowed: at most 0.5 m (deviations from the design, the gauge's too: not the \
+             gauge itself)"
+                .into(),
+        ),
+        ("s_m,gauge_mm\n0,1\n", "1 samples; allowed: two samples or more".into()),
+    ] {
+        assert_eq!(told(record(text), 10.0), [format!("{file}{message}")]);
+    }
+    assert_eq!(
+        told(record(good), 30.0),
+        [format!(
+            "{file}a record to 20 m; allowed: one that goes on to 30 m, the end of the track (repeat_blend = 50.0 repeats \
+             it, passing over 50 m)"
+        )]
+    );
+    assert_eq!(
+        told(Measured { text: None, ..record(good) }, 20.0),
+        [format!("{}which nobody has read; allowed: a file whose text is handed over with the case", file)]
+    );
+    assert_eq!(
+        told(Measured { repeat_blend: Some(11.0), ..record(good) }, 20.0),
+        [
+            "track.irregularity.repeat_blend: found 11; allowed: above 0 m, at most 10 m, half the record's length"
+        ]
+    );
+    assert!(
+        told(Measured { start: 40.0, ..record(good) }, 30.0)[0]
+            .starts_with("track.irregularity.start: found 40 m")
+    );
+    field(&[Irregularity::Measured(record(good))], 20.0);
+}
+
+#[test]
+fn a_table_of_points_is_the_law_that_it_was_taken_from() {
+    // Hamid and Yang's class 4 at 400 points: the same seed gives the same track, within what lies between the points.
+    let law = Psd { class: Some(4), ..class_6(3, GaugeSeries::Independent) };
+    let points = |channel: Channel, factor: f64| -> Vec<[f64; 2]> {
+        (0..400)
+            .map(|i| 0.02 * 40.0_f64.powf(f64::from(i) / 399.0))
+            .map(|f| [factor * f, law.spectrum(channel, f) / factor])
+            .collect()
+    };
+    let density = |factor: f64| Density {
+        lateral: points(Channel::Lateral, factor),
+        vertical: points(Channel::Vertical, factor),
+        cross_level: points(Channel::CrossLevel, factor),
+        gauge: points(Channel::Gauge, factor),
+    };
+    let table =
+        |density, density_rad| Psd { form: Form::Table, class: None, density, density_rad, ..law.clone() };
+    let reference = field(&[Irregularity::Psd(law.clone())], 1000.0);
+    let size: f64 = reference.extremes().iter().map(|e| e.1).fold(0.0, f64::max);
+    for written in [table(Some(density(1.0)), None), table(None, Some(density(std::f64::consts::TAU)))] {
+        let ours = field(&[Irregularity::Psd(written)], 1000.0);
+        for i in 0..1000 {
+            let s = 1.003 * f64::from(i);
+            for (a, b) in values(ours.at(s)).into_iter().zip(values(reference.at(s))) {
+                assert!((a - b).abs() < 1e-4 * size, "{s}: {a} {b}");
+            }
+        }
+    }
+    // Channels without points are smooth.
+    let alone = Density { vertical: points(Channel::Vertical, 1.0), ..Density::default() };
+    let alone = field(&[Irregularity::Psd(table(Some(alone), None))], 1000.0);
+    assert_eq!((alone.at(100.3).y, alone.at(100.3).gauge), (0.0, 0.0));
+    assert!(alone.at(100.3).z != 0.0);
+
+    let at = KeyPath::of("track.irregularity");
+    let told = |psd: Psd| -> Vec<String> {
+        Irregularity::Psd(psd).faults(&at).iter().map(ToString::to_string).collect()
+    };
+    assert_eq!(
+        told(table(None, None)),
+        [
+            "track.irregularity.density: found nothing; allowed: points with form = \"table\": density (1/m) or \
+             density_rad (rad/m)"
+        ]
+    );
+    assert_eq!(
+        told(table(Some(Density::default()), None)),
+        [
+            "track.irregularity.density: found no points; allowed: points [frequency, density] of lateral, vertical, cross_level or gauge"
+        ]
+    );
+    let vertical =
+        |points: &[[f64; 2]]| table(Some(Density { vertical: points.to_vec(), ..Density::default() }), None);
+    assert_eq!(
+        told(vertical(&[[0.1, 1e-6], [0.7, 1e-8]])),
+        [
+            "track.irregularity.density.vertical: found points from 0.1 to 0.7 1/m; allowed: points that cover 0.025000 \
+             to 0.666667 1/m, the band of wavelengths"
+        ]
+    );
+    assert_eq!(
+        told(vertical(&[[0.02, 1e-6], [0.01, 1e-8]])),
+        ["track.irregularity.density.vertical[1][0]: found 0.01; allowed: above 0.02, the frequency before"]
+    );
+    assert_eq!(
+        told(vertical(&[[0.02, 0.0], [0.8, 1e-8]])),
+        ["track.irregularity.density.vertical[0][1]: found 0; allowed: above 0 m2/(1/m)"]
+    );
+    assert_eq!(
+        told(Psd { density: Some(Density::default()), ..law }),
+        ["track.irregularity.density: found points; allowed: only with form = \"table\""]
     );
 }

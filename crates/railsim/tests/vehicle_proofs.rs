@@ -56,7 +56,7 @@ fn klingel_1883_wavelength_of_a_free_wheelset_on_cones() {
         tape_half_distance: half,
     };
     let contact = Contact::Profiles {
-        table: Box::new(table),
+        table: std::sync::Arc::new(table),
         law: CreepLaw::default(),
         shear_modulus: 8.2e10,
         dissipation: 1.0,
@@ -307,15 +307,15 @@ fn heun_and_ros2_agree_and_converge_with_order_two_on_the_vehicle() {
         y.iter().zip(&reference).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
     };
     let size = reference.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    for (kind, steps) in [("heun", [2.5e-4, 1.25e-4]), ("ros2", [5e-4, 2.5e-4])] {
+    // Order one would give 3.0 (heun, against this reference) and 2.2 (ros2), order two 5.0 and 4: half-way between.
+    for (kind, steps, least) in [("heun", [2.5e-4, 1.25e-4], 4.0), ("ros2", [5e-4, 2.5e-4], 3.1)] {
         let (coarse, fine) = (error(kind, steps[0]), error(kind, steps[1]));
         println!(
             "{kind}: error of carbody.y {coarse:.2e} m at {} s, {fine:.2e} m at {} s, of {size:.2e} m",
             steps[0], steps[1]
         );
         assert!(coarse < 0.01 * size);
-        // Order one would give 3.0 (heun, against this reference) and 2.2 (ros2), order two 5.0 and 4.
-        assert!(coarse / fine > 3.3, "{kind}: {coarse} / {fine}");
+        assert!(coarse / fine > least, "{kind}: {coarse} / {fine}");
     }
 }
 

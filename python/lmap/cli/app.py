@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from lmap.cli import channels, check, contact, lint, list_, modes, new, run, schema, view
+from lmap.cli import cache, channels, check, contact, lint, list_, modes, new, run, schema, sweep, view
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
 app = typer.Typer(
@@ -45,6 +45,7 @@ def _main(
 
 
 # Keep this list sorted by command.
+app.command("cache")(cache.cache)
 app.command("channels")(channels.channels)
 app.command("check")(check.check)
 app.command("contact")(contact.contact)
@@ -54,6 +55,7 @@ app.command("modes")(modes.modes)
 app.command("new")(new.new)
 app.command("run")(run.run)
 app.command("schema")(schema.schema)
+app.command("sweep")(sweep.sweep)
 app.command("view")(view.view)
 
 

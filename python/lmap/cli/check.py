@@ -34,12 +34,15 @@ def check(
     jobs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Threads; default: all processors.")
     ] = None,
+    no_cache: Annotated[
+        bool, typer.Option("--no-cache", help="Run everything, keep nothing for the next check.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Simulate and judge specs: a table of criteria with value, limit and margin.
 
-    Progress goes to stderr. Exit code: 0 everything passes, 1 something fails or waits, 2 bad input or not to
-    be judged, 130 stopped by Ctrl-C.
+    What has run before, unchanged, is not run again (lmap cache). Progress goes to stderr. Exit code: 0 everything
+    passes, 1 something fails or waits, 2 bad input or not to be judged, 130 stopped by Ctrl-C.
 
     Example: lmap check hunting --report out/ --set secondary.kz=5e5 --jobs 2
     """
@@ -54,6 +57,7 @@ def check(
         set=overrides.parse(settings or []),
         jobs=jobs,
         progress=choose(quiet=quiet),
+        cache=not no_cache,
     )
     # the verdict first: it was long in coming, and a report that cannot be written must not take it along
     unread: BrokenPipeError | None = None

@@ -13,7 +13,7 @@ def list_() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from lmap.check import shipped
+    from lmap.check import in_order, shipped
     from lmap.errors import EXIT_ERROR, InputProblem
     from lmap.spec.load import load
 
@@ -21,7 +21,7 @@ def list_() -> None:
     for heading in ("id", "name", "procedure", "title", "criteria"):
         table.add_column(heading)
     trouble: list[str] = []
-    for path in shipped():
+    for path in in_order(shipped()):
         try:
             spec = load(path).spec
         except InputProblem as error:

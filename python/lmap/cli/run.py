@@ -34,7 +34,7 @@ def run(
     from lmap.prepare import load_case
     from lmap.report.parquet import to_parquet
     from lmap.simulate import channels
-    from lmap.verdict import CaseResult
+    from lmap.verdict import CaseResult, Held
 
     target = Path(f"{case.stem}.parquet") if output is None else output
     loaded = load_case(case)
@@ -48,8 +48,7 @@ def run(
         hash=loaded.hash,
         case=loaded.data,
         case_json=loaded.json,
-        frame=outcome.frame,
-        quantities=outcome.frame,
+        frames=Held(outcome.frame, outcome.frame),
         ended=outcome.ended,
         statistics=outcome.statistics,
         units={channel.name: channel.unit for channel in known},

@@ -17,6 +17,7 @@ from __future__ import annotations
 import fnmatch
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
@@ -42,7 +43,7 @@ from lmap.errors import (
     nearest_hint,
     problems_of_validation,
 )
-from lmap.signals import Filter, Link, Reading, Statistic, signal_of
+from lmap.signals import Filter, Joint, Link, Reading, Statistic, signal_of
 from lmap.verdict import CriterionVerdict, Outcome
 
 ASSUMED = "assumed"
@@ -67,6 +68,8 @@ class Criterion(BaseModel):
     name: str = Field(min_length=1)
     signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
+    case: Annotated[list[str] | None, BeforeValidator(_listed_names)] = Field(default=None, min_length=1)
+    """Labels, or patterns of them, of the cases that it is judged in, all without it; `!` before one leaves out."""
     unit: str
     max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
     max: FiniteFloat | None = None
@@ -87,6 +90,17 @@ class Criterion(BaseModel):
         if self.source == ASSUMED and not self.reason:
             raise ValueError('a reason where the source is "assumed"')
         return self
+
+    def applies_to(self, label: str) -> bool:
+        """Whether it is judged in the case of this label."""
+        named = self.case or []
+        wanted = [pattern for pattern in named if not pattern.startswith("!")]
+        unwanted = [pattern[1:] for pattern in named if pattern.startswith("!")]
+
+        def any_of(patterns: list[str]) -> bool:
+            return any(fnmatch.fnmatchcase(label, pattern) for pattern in patterns)
+
+        return (not wanted or any_of(wanted)) and not any_of(unwanted)
 
     @property
     def bounds(self) -> tuple[float, ...]:
@@ -137,6 +151,11 @@ class Criterion(BaseModel):
         """The chain's links; those with faults (see `chain_problems`) are left out."""
         return [link for link, _ in (_link(table) for table in self.chain) if link is not None]
 
+    @property
+    def signal_unit(self) -> str:
+        """The unit that its signals are read in."""
+        return _units(self.chain, self.unit)[0]
+
     def written(self) -> dict[str, Any]:
         """The criterion as plain data for TOML, defaults left out."""
         data = self.model_dump(exclude_defaults=True, exclude_none=True)
@@ -160,6 +179,15 @@ def _link(table: Mapping[str, Any]) -> tuple[Link | None, list[Problem]]:
         known: dict[KeyPath, list[str]] = {(): list(kind.model_fields)}
         found_ = problems_of_validation(error.errors(include_url=False), known)
         return None, [problem.at(prefix=(name,)) for problem in found_]
+
+
+def _units(chain: Sequence[Mapping[str, Any]], unit: str) -> tuple[str, str]:
+    """Units that the chain's statistic takes its signal in and gives its number in; by default the criterion's."""
+    name = next(iter(chain[-1]), "")
+    kind = signals.BY_NAME.get(name)
+    if kind is None or not issubclass(kind, Statistic):
+        return unit, unit
+    return kind.reads or unit, kind.gives or unit
 
 
 def chain_problems(criterion: Criterion) -> list[Problem]:
@@ -190,6 +218,9 @@ def chain_problems(criterion: Criterion) -> list[Problem]:
         problems.append(
             Problem(found=f'"{criterion.unit}"', allowed=listed(units.UNITS, 40), key=("unit",), hint=hint)
         )
+    elif units.factor(given := _units(criterion.chain, criterion.unit)[1], criterion.unit) is None:
+        allowed = f"a unit of what the chain gives: {listed(units.comparable(given))}"
+        problems.append(Problem(found=f'"{criterion.unit}"', allowed=allowed, key=("unit",)))
     return problems
 
 
@@ -224,6 +255,12 @@ def signal_problems(criterion: Criterion, channels: Mapping[str, str]) -> list[P
     `channels` gives the unit by name.
     """
     problems: list[Problem] = []
+    wanted = criterion.signal_unit
+    last = next(iter(criterion.links()[-1:]), None)
+    count = len(expand(criterion.signal, channels))
+    if isinstance(last, Joint) and 0 < count != last.count:
+        allowed = f"{last.count} signals for {last.name}: x, y and z"
+        problems.append(Problem(found=f"{count} signals", allowed=allowed, key=("signal",)))
     for position, pattern in enumerate(criterion.signal):
         key: KeyPath = ("signal",) if len(criterion.signal) == 1 else ("signal", position)
         names = expand([pattern], channels)
@@ -231,8 +268,12 @@ def signal_problems(criterion: Criterion, channels: Mapping[str, str]) -> list[P
             allowed = "a channel of the vehicle (`lmap channels VEHICLE` lists them)"
             hint = nearest_hint(pattern, channels)
             problems.append(Problem(found=f'"{pattern}"', allowed=allowed, key=key, hint=hint))
-        wrong = [name for name in names if units.factor(channels[name], criterion.unit) is None]
-        if wrong and criterion.unit in units.UNITS and not any(one.key == ("unit",) for one in problems):
+        wrong = [name for name in names if units.factor(channels[name], wanted) is None]
+        if wrong and wanted != criterion.unit:
+            problems.append(
+                Problem(found=f"{wrong[0]} in {channels[wrong[0]]}", allowed=f"a signal in {wanted}", key=key)
+            )
+        elif wrong and criterion.unit in units.UNITS and not any(one.key == ("unit",) for one in problems):
             allowed = f"a unit of {wrong[0]}: {listed(units.comparable(channels[wrong[0]]))}"
             problems.append(Problem(found=f'"{criterion.unit}"', allowed=allowed, key=("unit",)))
     return problems
@@ -260,10 +301,14 @@ def trace(
     Values are converted from the unit `given` (of the channel) to `wanted` (of the criterion). Raises what
     judging would raise, a `JudgementProblem`.
     """
-    stages, reading = _run(frame, chain, signal, _factor(signal, given, wanted))
+    read_in, given_in = _units(chain, wanted)
+    stages, reading = _run(frame, chain, signal, _factor(signal, given, read_in))
+    if given_in != wanted or read_in != wanted:
+        # the number is another quantity than the signal: its own curve stands alone
+        stages = []
     if reading.curve is not None:
-        curve = reading.curve
-        stages.append(Stage(_statistic(chain), curve["t"].to_numpy(), curve["x"].to_numpy()))
+        curve, factor = reading.curve, _factor(_statistic(chain), given_in, wanted)
+        stages.append(Stage(_statistic(chain), curve["t"].to_numpy(), curve["x"].to_numpy() * factor))
     return stages
 
 
@@ -278,9 +323,10 @@ def _factor(signal: str, given: str, wanted: str) -> float:
     return factor
 
 
-def _run(
+def _filtered(
     frame: pl.DataFrame, chain: Sequence[Mapping[str, Any]], name: str, factor: float
-) -> tuple[list[Stage], Reading]:
+) -> tuple[list[Stage], pl.DataFrame, Statistic]:
+    """The signal on its way through the filters, what comes out, and the statistic that reads it."""
     signal = signal_of(frame, name, factor)
     stages = [Stage("signal", signal["t"].to_numpy(), signal["x"].to_numpy())]
     for table in chain:
@@ -289,13 +335,44 @@ def _run(
             signal = link.apply(signal)
             stages.append(Stage(link.name, signal["t"].to_numpy(), signal["x"].to_numpy()))
         elif isinstance(link, Statistic):
-            reading = link.read(signal)
-            if not math.isfinite(reading.value):
-                raise JudgementProblem(f"{link.name} of {name} is {reading.value}")
-            return stages, reading
+            return stages, signal, link
         else:
             raise JudgementProblem("; ".join(str(problem) for problem in problems))
     raise JudgementProblem("the chain has no statistic at its end")
+
+
+def _run(
+    frame: pl.DataFrame, chain: Sequence[Mapping[str, Any]], name: str, factor: float
+) -> tuple[list[Stage], Reading]:
+    stages, signal, statistic = _filtered(frame, chain, name, factor)
+    return stages, _finite(statistic.read(signal), statistic, name)
+
+
+def _finite(reading: Reading, statistic: Statistic, name: str) -> Reading:
+    if not math.isfinite(reading.value):
+        raise JudgementProblem(f"{statistic.name} of {name} is {reading.value}")
+    return reading
+
+
+def _readings(
+    criterion: Criterion, frame: pl.DataFrame, names: Sequence[str], channel_units: Mapping[str, str]
+) -> list[tuple[str, Reading]]:
+    """What the chain reads on each signal; of a joint statistic one reading, under the first signal's name."""
+    read_in, given_in = _units(criterion.chain, criterion.unit)
+    factors = [_factor(name, channel_units.get(name, "unknown"), read_in) for name in names]
+    last = next(iter(criterion.links()[-1:]), None)
+    if isinstance(last, Joint):
+        if len(names) != last.count:
+            raise JudgementProblem(f"{last.name} joins {last.count} signals, here are {len(names)}")
+        parts = [_filtered(frame, criterion.chain, *one)[1] for one in zip(names, factors, strict=True)]
+        found = [(names[0], _finite(last.read_together(parts), last, listed(names)))]
+    else:
+        found = [
+            (name, _run(frame, criterion.chain, name, factor)[1])
+            for name, factor in zip(names, factors, strict=True)
+        ]
+    factor = _factor(_statistic(criterion.chain), given_in, criterion.unit)
+    return [(name, replace(reading, value=reading.value * factor)) for name, reading in found]
 
 
 def judge(
@@ -323,9 +400,7 @@ def judge(
         message = "the criterion names no signal"
     if message is None:
         try:
-            for name in names:
-                factor = _factor(name, channel_units.get(name, "unknown"), criterion.unit)
-                readings.append((name, _run(frame, criterion.chain, name, factor)[1]))
+            readings = _readings(criterion, frame, names, channel_units)
         except JudgementProblem as problem:
             message = str(problem)
     if message is not None:

@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 if TYPE_CHECKING:
     from rich.progress import Progress as RichBars
     from rich.progress import TaskID
 
 LINES_PER_CASE = 4
-"""Plain lines while a case runs."""
+"""Plain lines while a case runs, where there are few cases."""
+FEW = 8
+"""So many cases have lines, each, while they run; of more only the ends are told."""
+
+
+class Entry(NamedTuple):
+    """A case that is about to run."""
+
+    name: str
+    length: float | None
+    """m."""
+    cost: float = 1.0
+    """Roughly the seconds that it takes."""
 
 
 class Progress:
     """Hears how cases go; this one says nothing."""
 
-    def begin(self, cases: Sequence[tuple[str, float | None]], jobs: int) -> None:
-        """Cases by label and length (m) are about to run on `jobs` threads."""
+    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0) -> None:
+        """Cases are about to run on `jobs` threads; `known` more need no run."""
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
         """A case has come so far (part of the run, m) at so many times real time."""
@@ -39,31 +52,85 @@ class Progress:
         self.end()
 
 
+class Suite:
+    """How far all cases together are, by their costs."""
+
+    def __init__(self, cases: Sequence[Entry]) -> None:
+        self._costs = [max(case.cost, 1e-9) for case in cases]
+        self._fractions = [0.0] * len(cases)
+        self._ended = 0
+        self._start = time.perf_counter()
+
+    def update(self, index: int, fraction: float) -> None:
+        """A case has come so far."""
+        self._fractions[index] = min(max(fraction, 0.0), 1.0)
+
+    def done(self, index: int) -> None:
+        """A case has ended."""
+        self._fractions[index] = 1.0
+        self._ended += 1
+
+    @property
+    def fraction(self) -> float:
+        """Share of the work that is done."""
+        done = sum(cost * part for cost, part in zip(self._costs, self._fractions, strict=True))
+        return done / sum(self._costs)
+
+    @property
+    def remaining_s(self) -> float | None:
+        """Seconds that the rest will take at the pace so far; none at the start."""
+        fraction = self.fraction
+        if fraction < 0.02:
+            return None
+        return (time.perf_counter() - self._start) * (1.0 - fraction) / fraction
+
+    @property
+    def text(self) -> str:
+        """`3 of 40 cases, 25 s left`."""
+        total = len(self._costs)
+        text = f"{self._ended} of {total} {'case' if total == 1 else 'cases'}"
+        left = self.remaining_s
+        if left is None or self._ended == total:
+            return text
+        return f"{text}, {_duration(left)} left"
+
+
+def _duration(seconds: float) -> str:
+    whole = round(seconds)
+    return f"{whole} s" if whole < 100 else f"{whole // 60} min {whole % 60:02d} s"
+
+
 class Lines(Progress):
-    """A few plain lines per case, for logs."""
+    """A few plain lines per case, for logs; one, when it ends, where there are many cases."""
 
     def __init__(self) -> None:
-        self._cases: list[tuple[str, float | None]] = []
+        self._cases: list[Entry] = []
         self._said: list[int] = []
+        self._suite = Suite([])
 
-    def begin(self, cases: Sequence[tuple[str, float | None]], jobs: int) -> None:
+    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0) -> None:
         """Says how many there are."""
         self._cases = list(cases)
         self._said = [0] * len(cases)
+        self._suite = Suite(cases)
         noun = "case" if len(cases) == 1 else "cases"
-        self._say(f"running {len(cases)} {noun} on {jobs} thread{'' if jobs == 1 else 's'}")
+        found = f", {known} known from before" if known else ""
+        self._say(f"running {len(cases)} {noun} on {jobs} thread{'' if jobs == 1 else 's'}{found}")
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
         """Says something every quarter of the way."""
+        self._suite.update(index, fraction)
         step = int(fraction * LINES_PER_CASE)
-        if self._said[index] < step < LINES_PER_CASE:
+        if len(self._cases) <= FEW and self._said[index] < step < LINES_PER_CASE:
             self._said[index] = step
-            label, length = self._cases[index]
-            self._say(f"{label}: {_distance(distance, length)}, {factor:.1f} times real time")
+            case = self._cases[index]
+            self._say(f"{case.name}: {_distance(distance, case.length)}, {factor:.1f} times real time")
 
     def done(self, index: int, wall_s: float, trouble: str | None) -> None:
         """Says how it ended."""
-        self._say(f"{self._cases[index][0]}: {trouble or 'done'} ({wall_s:.1f} s)")
+        self._suite.done(index)
+        many = f"; {self._suite.text}" if len(self._cases) > FEW else ""
+        self._say(f"{self._cases[index].name}: {trouble or 'done'} ({wall_s:.1f} s){many}")
 
     @staticmethod
     def _say(text: str) -> None:
@@ -72,15 +139,17 @@ class Lines(Progress):
 
 
 class Bars(Progress):
-    """One bar per case, with distance and real-time factor."""
+    """A bar for the whole, and one for each case that is on its way, with distance and real-time factor."""
 
     def __init__(self) -> None:
         self._bars: RichBars | None = None
-        self._tasks: list[TaskID] = []
-        self._lengths: list[float | None] = []
+        self._all: TaskID | None = None
+        self._tasks: dict[int, TaskID] = {}
+        self._cases: list[Entry] = []
+        self._suite = Suite([])
 
-    def begin(self, cases: Sequence[tuple[str, float | None]], jobs: int) -> None:
-        """Draws a bar for each."""
+    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0) -> None:
+        """Draws the bar of the whole."""
         from rich.console import Console
         from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
         from rich.progress import Progress as RichBars
@@ -93,40 +162,46 @@ class Bars(Progress):
             TimeElapsedColumn(),
             console=Console(stderr=True),
         )
-        self._lengths = [length for _, length in cases]
-        self._tasks = [
-            self._bars.add_task(label, total=1.0, start=False, state="waiting") for label, _ in cases
-        ]
+        self._cases = list(cases)
+        self._suite = Suite(cases)
+        found = f", {known} known from before" if known else ""
+        self._all = self._bars.add_task("all", total=1.0, state=f"{self._suite.text}{found}")
         self._bars.start()
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
-        """Moves a bar."""
+        """Moves a case's bar, drawn when it is heard of first, and that of the whole."""
         if self._bars is None:
             return
-        task = self._tasks[index]
-        if not self._bars.tasks[index].started:
-            self._bars.start_task(task)
-        state = f"{_distance(distance, self._lengths[index])}, {factor:.1f} x real time"
-        self._bars.update(task, completed=fraction, state=state)
+        case = self._cases[index]
+        if index not in self._tasks:
+            self._tasks[index] = self._bars.add_task(case.name, total=1.0, state="")
+        state = f"{_distance(distance, case.length)}, {factor:.1f} x real time"
+        self._bars.update(self._tasks[index], completed=fraction, state=state)
+        self._suite.update(index, fraction)
+        self._move()
 
     def done(self, index: int, wall_s: float, trouble: str | None) -> None:
-        """Stops a bar."""
+        """Takes a case's bar away; what went wrong stays to be read."""
         if self._bars is None:
             return
-        task = self._tasks[index]
-        if not self._bars.tasks[index].started:
-            self._bars.start_task(task)
-        if trouble is None:
-            self._bars.update(task, completed=1.0)
-        else:
-            self._bars.update(task, state=trouble)
-        self._bars.stop_task(task)
+        task = self._tasks.pop(index, None)
+        if task is not None:
+            self._bars.remove_task(task)
+        if trouble is not None:
+            self._bars.console.print(f"{self._cases[index].name}: {trouble}", markup=False, highlight=False)
+        self._suite.done(index)
+        self._move()
 
     def end(self) -> None:
         """Leaves the bars as they are."""
         if self._bars is not None:
             self._bars.stop()
             self._bars = None
+
+    def _move(self) -> None:
+        assert self._bars is not None
+        assert self._all is not None
+        self._bars.update(self._all, completed=self._suite.fraction, state=self._suite.text)
 
 
 def _distance(distance: float, length: float | None) -> str:

@@ -2,12 +2,66 @@
 
 from __future__ import annotations
 
-from lmap.procedures import critical_speed, hunting, lint, modes, view
-from lmap.procedures.base import CaseFigures, Look, Looking, Procedure
+from lmap.procedures import (
+    axle_loads,
+    bogie_rotation,
+    coupler_forces,
+    critical_speed,
+    curves,
+    heights,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    speed_range,
+    step,
+    sway,
+    twist,
+    view,
+)
+from lmap.procedures.base import (
+    CaseFigures,
+    Deriving,
+    Illustrated,
+    Look,
+    Looking,
+    Procedure,
+    Rewriting,
+    Set,
+)
 
 # Keep this list sorted by name.
-PROCEDURES: tuple[Procedure, ...] = (critical_speed, hunting, lint, modes, view)
+PROCEDURES: tuple[Procedure, ...] = (
+    axle_loads,
+    bogie_rotation,
+    coupler_forces,
+    critical_speed,
+    curves,
+    heights,
+    hunting,
+    lint,
+    modes,
+    p2,
+    quasi_static,
+    speed_range,
+    step,
+    sway,
+    twist,
+    view,
+)
 
 BY_NAME: dict[str, Procedure] = {procedure.NAME: procedure for procedure in PROCEDURES}
 
-__all__ = ["BY_NAME", "PROCEDURES", "CaseFigures", "Look", "Looking", "Procedure"]
+__all__ = [
+    "BY_NAME",
+    "PROCEDURES",
+    "CaseFigures",
+    "Deriving",
+    "Illustrated",
+    "Look",
+    "Looking",
+    "Procedure",
+    "Rewriting",
+    "Set",
+]

@@ -7,17 +7,21 @@ nothing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
-from lmap.errors import InputProblem, Problem
+from pydantic import BaseModel, ValidationError
+
+from lmap.errors import InputProblem, KeyPath, Problem, problems_of_validation
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
-from lmap.verdict import CriterionVerdict, Fact
+from lmap.verdict import CriterionVerdict, Drawing, Fact
 
 if TYPE_CHECKING:
     import polars as pl
+
+_Settings = TypeVar("_Settings", bound=BaseModel)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,16 +45,66 @@ class Procedure(Protocol):
     NAME: str
     SUMMARY: str
     UNITS: Mapping[str, str]
-    """Units of the columns that `quantities` adds."""
+    """Units of the columns that `quantities` adds. Where their names depend on the vehicle: see `Deriving`."""
 
     def cases(self, spec: Spec, vehicle: VehicleData) -> list[Case]:
         """The cases that a spec expands to, profiles still by name."""
 
-    def quantities(self, spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
-        """What is judged, by label; by default the frames themselves."""
+    def quantities(
+        self, spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+    ) -> Mapping[str, pl.DataFrame]:
+        """What is judged, by label; by default the frames themselves.
+
+        `frames` holds the cases that reached their end. A label that is left out is not judged, one that no case
+        has is judged too. A `JudgementProblem` says why nothing can be.
+        """
 
     def facts(self, spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
         """What is shown beside the verdicts."""
+
+
+@runtime_checkable
+class Set(Procedure, Protocol):
+    """A procedure with numbers of its own in the spec's table `[test]`."""
+
+    SETTINGS: type[BaseModel]
+    """Its keys; see `settings`."""
+
+
+@runtime_checkable
+class Deriving(Procedure, Protocol):
+    """A procedure that adds columns whose names depend on the vehicle."""
+
+    def derived(self, spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
+        """Name and unit of the columns that `quantities` adds to frames with these channels (name to unit)."""
+
+
+@runtime_checkable
+class Rewriting(Procedure, Protocol):
+    """A procedure whose cases hold what the spec writes under another key."""
+
+    def origin(self, spec: Spec, label: str, key: KeyPath) -> KeyPath:
+        """Where the spec writes a key of the case of this label, so that a fault of it is told there."""
+
+
+@runtime_checkable
+class Illustrated(Procedure, Protocol):
+    """A procedure that draws what was judged."""
+
+    def drawings(
+        self, spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData
+    ) -> list[Drawing]:
+        """Plots for the report, of what `quantities` gave."""
+
+
+def settings(spec: Spec, kind: type[_Settings]) -> _Settings:
+    """The spec's `[test]`, checked; an `InputProblem` with every fault, keys starting at the spec."""
+    try:
+        return kind.model_validate(spec.test)
+    except ValidationError as error:
+        known: dict[KeyPath, list[str]] = {(): list(kind.model_fields)}
+        faults = problems_of_validation(error.errors(include_url=False), known)
+        raise InputProblem([fault.at(prefix=("test",)) for fault in faults]) from None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,3 +157,37 @@ def expand(spec: Spec, vehicle: VehicleData, *, kind: str = "time") -> list[Case
             run: dict[str, Any] = {"kind": kind, **spec.run.rest, "speed": speed, "wheel_profile": profile}
             cases.append(build(label=" ".join(parts), vehicle=vehicle, track=spec.track, run=run))
     return cases
+
+
+def at_rest(spec: Spec, vehicle: VehicleData, run: Mapping[str, Any] | None = None) -> list[Case]:
+    """A case for every wheel profile of the spec, standing in balance; `run` adds to `[run]`."""
+    profiles = spec.run.wheel_profile or [vehicle.wheel_profile or ""]
+    cases = []
+    for profile in profiles:
+        own: dict[str, Any] = {"kind": "equilibrium", "speed": 0.0, **spec.run.rest, **(run or {})}
+        if profile:
+            own["wheel_profile"] = profile
+        label = profile if spec.run.wheel_profile else "at rest"
+        cases.append(build(label=label, vehicle=vehicle, track=spec.track, run=own))
+    return cases
+
+
+def wheelsets(columns: Iterable[str]) -> list[str]:
+    """Names of the wheelsets among a frame's columns, in their order: those with wheel forces."""
+    return [name.removesuffix(".left.Q") for name in columns if name.endswith(".left.Q")]
+
+
+def with_unloading(frame: pl.DataFrame, level: pl.DataFrame) -> pl.DataFrame:
+    """A frame with `<axle>.<side>.unloading`: the share that a wheel has lost of its load in `level`'s first row."""
+    import polars as pl
+
+    loads = [name for name in frame.columns if name.endswith(".Q") and name in level.columns]
+    return frame.with_columns(
+        (1.0 - pl.col(name) / float(level[name][0])).alias(f"{name.removesuffix('.Q')}.unloading")
+        for name in loads
+    )
+
+
+def unloading_units(channels: Iterable[str]) -> dict[str, str]:
+    """Names and units of the columns of `with_unloading`."""
+    return {f"{name}.{side}.unloading": "1" for name in wheelsets(channels) for side in ("left", "right")}

@@ -29,7 +29,9 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     return expand(spec, vehicle, kind="lint")
 
 
-def quantities(spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
+def quantities(
+    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+) -> Mapping[str, pl.DataFrame]:
     """One row with the numbers of findings; a frame without findings is a good one."""
     return {label: _counts(frame) for label, frame in frames.items()}
 

@@ -34,7 +34,9 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     return found
 
 
-def quantities(spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
+def quantities(
+    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+) -> Mapping[str, pl.DataFrame]:
     """The modes with the magnitude of each eigenvalue."""
     import polars as pl
 

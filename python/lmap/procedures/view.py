@@ -32,7 +32,9 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     return []
 
 
-def quantities(spec: Spec, frames: Mapping[str, pl.DataFrame]) -> Mapping[str, pl.DataFrame]:
+def quantities(
+    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+) -> Mapping[str, pl.DataFrame]:
     """The frames as they are, of which there are none."""
     return frames
 

@@ -38,9 +38,13 @@ def write_report(acceptance: Acceptance, folder: str | os.PathLike[str]) -> None
     root = Path(folder)
     cases = root / "cases"
     cases.mkdir(parents=True, exist_ok=True)
-    for case in {case.hash: case for spec in acceptance.specs for case in spec.cases}.values():
-        files.write(cases / f"{case.hash}.json", case.case_json.encode())
-        files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
+    written: set[str] = set()
+    for spec in acceptance.specs:
+        for case in spec.cases:
+            if case.hash not in written:
+                written.add(case.hash)
+                files.write(cases / f"{case.hash}.json", case.case_json.encode())
+                files.put(cases / f"{case.hash}.parquet", partial(write_parquet, case))
     for spec, name in _drawings(acceptance):
         files.write(root / name, render_scene(spec.drawing or {}))
     files.put(root / "index.html", partial(_write_page, acceptance))
@@ -70,20 +74,20 @@ def _parts(acceptance: Acceptance) -> Iterator[bytes]:
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
-    page = template.render(
+    pieces = template.generate(
         page=_page(acceptance),
         style=Markup((templates / "style.css").read_text(encoding="utf-8")),
         script=Markup((templates / "page.js").read_text(encoding="utf-8")),
     )
     # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
-    place = page.find(_PLOTLY)
-    if place < 0:
-        raise ValueError(f"the page's template has no {_PLOTLY}")
-    yield page[:place].encode()
-    yield b"<script>"
-    yield plotly_js()
-    yield b"</script>"
-    yield page[place + len(_PLOTLY) :].encode()
+    for piece in pieces:
+        before, library, after = piece.partition(_PLOTLY)
+        yield before.encode()
+        if library:
+            yield b"<script>"
+            yield plotly_js()
+            yield b"</script>"
+            yield after.encode()
 
 
 def _drawings(acceptance: Acceptance) -> list[tuple[SpecVerdict, str]]:
@@ -128,24 +132,33 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "headline": words.headline(words.all_criteria(acceptance)),
         "version": acceptance.version,
         "core": acceptance.core,
-        "specs": [
-            _spec(position, spec, alone=len(acceptance.specs) == 1, drawing=drawings.get(id(spec)))
+        "index": [_entry(position, spec) for position, spec in enumerate(acceptance.specs)],
+        # one at a time: its frames and plots are let go before the next
+        "specs": (
+            _spec(position, spec.held(), alone=len(acceptance.specs) == 1, drawing=drawings.get(id(spec)))
             for position, spec in enumerate(acceptance.specs)
-        ],
+        ),
+    }
+
+
+def _entry(position: int, spec: SpecVerdict) -> dict[str, str]:
+    """A line of the page's index."""
+    return {
+        "anchor": f"spec-{position}",
+        "id": spec.id,
+        "title": spec.title,
+        "verdict": words.VERDICTS[spec.outcome],
+        "verdict_class": _class(str(spec.outcome)),
     }
 
 
 def _spec(position: int, spec: SpecVerdict, *, alone: bool, drawing: str | None = None) -> dict[str, Any]:
     return {
-        "anchor": f"spec-{position}",
-        "id": spec.id,
-        "title": spec.title,
+        **_entry(position, spec),
         "file": spec.file,
         "procedure": spec.procedure,
         "vehicle": spec.vehicle,
         "condition": spec.condition,
-        "verdict": words.VERDICTS[spec.outcome],
-        "verdict_class": _class(str(spec.outcome)),
         # With one spec the page's head has said it.
         "headline": "" if alone else f"{_sentence(words.headline(spec.criteria))}.",
         "criteria": _rows(spec),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from lmap.verdict import CaseResult
@@ -29,18 +30,23 @@ def to_parquet(case: CaseResult) -> bytes:
 
 def write_parquet(case: CaseResult, file: Path | io.BytesIO) -> None:
     """The file itself, without a copy of it in memory."""
-    case.frame.write_parquet(
+    frame = case.frame
+    frame.write_parquet(
         file,
         compression="zstd",
         row_group_size=ROWS_AT_ONCE,
-        metadata={CASE_KEY: case.hash, CHANNELS_KEY: channels_json(case)},
+        metadata={CASE_KEY: case.hash, CHANNELS_KEY: _channels_json(case, frame.columns)},
     )
 
 
 def channels_json(case: CaseResult) -> str:
     """Name, unit and meaning of every column of the frame, in its order."""
+    return _channels_json(case, case.frame.columns)
+
+
+def _channels_json(case: CaseResult, columns: Sequence[str]) -> str:
     channels = [
         {"name": name, "unit": case.units.get(name, ""), "meaning": case.meanings.get(name, "")}
-        for name in case.frame.columns
+        for name in columns
     ]
     return json.dumps(channels, ensure_ascii=False)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lmap.report.numbers import NOTHING, number
 from lmap.verdict import CaseResult
-
-if TYPE_CHECKING:
-    import polars as pl
 
 _CLOCKS = ("wall", "real_time", "elapsed", "seconds", "ns_per", "per_second")
 """Parts of names of statistics that a clock made: they differ from run to run."""
@@ -37,9 +34,9 @@ class RunFigures:
 
 
 def figures(case: CaseResult) -> RunFigures:
-    """Read from the case and its frame."""
-    simulated = span(case.frame, "t")
-    distance = span(case.frame, "s")
+    """Read from the case and what its run recorded."""
+    extent = case.extent
+    simulated = extent.simulated
     run = case.case.get("run", {})
     run = run if isinstance(run, Mapping) else {}
     integrator = run.get("integrator", {})
@@ -47,7 +44,7 @@ def figures(case: CaseResult) -> RunFigures:
     factor = simulated / case.wall_s if simulated is not None and case.wall_s > 0.0 else None
     return RunFigures(
         case=case.label,
-        distance=_with(distance, "m"),
+        distance=_with(extent.distance, "m"),
         simulated=_with(simulated, "s"),
         wall=_with(case.wall_s, "s", 3) if case.wall_s > 0.0 else NOTHING,
         real_time_factor=NOTHING if factor is None else number(factor, 3),
@@ -57,16 +54,8 @@ def figures(case: CaseResult) -> RunFigures:
         ended=str(case.ended.get("kind", "unknown")).replace("_", " "),
         message=str(case.ended.get("message") or ""),
         complete=case.complete,
-        rows=case.frame.height,
+        rows=extent.rows,
     )
-
-
-def span(frame: pl.DataFrame, name: str) -> float | None:
-    """From the first to the last value of a column; none where there is none."""
-    if name not in frame.columns or frame.height == 0:
-        return None
-    first, last = frame.get_column(name)[0], frame.get_column(name)[-1]
-    return None if first is None or last is None else float(last) - float(first)
 
 
 def without_clocks(statistics: Mapping[str, Any]) -> dict[str, Any]:

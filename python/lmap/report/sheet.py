@@ -66,6 +66,8 @@ class Plot:
     """One length on both axes."""
     log: bool = False
     """Both axes logarithmic."""
+    y_down: bool = False
+    """The vertical axis points down."""
     height: int = 340
     notes: Sequence[Note] = ()
 
@@ -131,15 +133,16 @@ def plotly_js() -> bytes:
 def _figure(title: str, caption: str, plots: Sequence[Plot]) -> dict[str, Any]:
     choices = [plot.choice for plot in plots]
     views = [
-        {"case": plot.choice, "stretch": "", "caption": plot.caption, "message": None, **_plotly(plot)}
+        {"case": plot.choice, "stretch": "", "caption": plot.caption, "message": None, **plotted(plot)}
         for plot in plots
     ]
     return {"title": title, "caption": caption, "choices": choices, "json": script_json(views)}
 
 
-def _plotly(plot: Plot) -> dict[str, Any]:
-    x: dict[str, Any] = {"title": {"text": _escape(plot.x_title)}}
-    y: dict[str, Any] = {"title": {"text": _escape(plot.y_title)}}
+def plotted(plot: Plot) -> dict[str, Any]:
+    """`data` and `layout` for plotly.js, with roles in place of colours."""
+    x: dict[str, Any] = {"title": {"text": escape(plot.x_title)}}
+    y: dict[str, Any] = {"title": {"text": escape(plot.y_title)}}
     if plot.x_range is not None:
         x["range"] = list(plot.x_range)
     if plot.y_range is not None:
@@ -148,11 +151,13 @@ def _plotly(plot: Plot) -> dict[str, Any]:
         x["type"] = y["type"] = "log"
     if plot.equal:
         y |= {"scaleanchor": "x", "scaleratio": 1}
+    if plot.y_down:
+        y["autorange"] = "reversed"
     notes = [
         {
             "x": note.x,
             "y": note.y,
-            "text": _escape(note.text),
+            "text": escape(note.text),
             "showarrow": False,
             "yshift": 12 if note.above else -12,
             "role": note.role,
@@ -164,7 +169,7 @@ def _plotly(plot: Plot) -> dict[str, Any]:
 
 
 def _trace(line: Line) -> dict[str, Any]:
-    name = _escape(line.name)
+    name = escape(line.name)
     trace: dict[str, Any] = {
         "type": "scatter",
         "mode": line.mode,
@@ -178,7 +183,7 @@ def _trace(line: Line) -> dict[str, Any]:
     if line.mode != "lines":
         trace["marker"] = {"size": line.size}
     if line.texts:
-        trace["text"] = [_escape(text) for text in line.texts]
+        trace["text"] = [escape(text) for text in line.texts]
     return trace
 
 
@@ -188,6 +193,6 @@ def packed(values: ArrayLike) -> dict[str, str]:
     return {"dtype": "f4", "bdata": base64.b64encode(raw).decode("ascii")}
 
 
-def _escape(text: str) -> str:
+def escape(text: str) -> str:
     """plotly.js reads a part of HTML in its texts: none of it may come from a name."""
     return html.escape(text, quote=False)

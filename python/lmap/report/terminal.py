@@ -21,15 +21,27 @@ _STYLES = {
     Outcome.NOT_ASSESSED: "bold yellow",
 }
 
+_FEW = 3
+"""Up to this many specs say all; of more, what needs no attention is in the report."""
+
 _SIGNAL_COLUMNS = 120
 """From this width on the worst signal has a column of its own."""
 
 
 def table(acceptance: Acceptance, console: Console) -> None:
-    """Prints criteria, facts, assumed limits and run figures of every spec, and the verdict of the whole."""
+    """Prints criteria, facts, assumed limits and run figures of every spec, and the verdict of the whole.
+
+    The reasons of assumed limits, which fill pages, are left to the report where there are many specs.
+    """
+    few = len(acceptance.specs) <= _FEW
     for spec in acceptance.specs:
-        _spec(spec, console)
+        _spec(spec, console, reasons=few)
     if len(acceptance.specs) > 1:
+        console.print(_summary(acceptance))
+        if not few and any(words.assumptions(spec) for spec in acceptance.specs):
+            where = "the report (--report DIR), and a check of one spec, give the reason of each"
+            _note("assumed limits", where, console)
+        console.print()
         _headline(
             "all specs",
             acceptance.outcome,
@@ -39,7 +51,25 @@ def table(acceptance: Acceptance, console: Console) -> None:
         )
 
 
-def _spec(spec: SpecVerdict, console: Console) -> None:
+def _summary(acceptance: Acceptance) -> Table:
+    """One row for each spec."""
+    grid = _grid()
+    for title in ("id", "test", "verdict", "margin", "smallest margin, or what decided"):
+        grid.add_column(title, overflow="fold")
+    for line in words.summary(acceptance):
+        style = _STYLES[line.outcome]
+        cells = (
+            line.id,
+            line.title,
+            Text(words.VERDICTS[line.outcome], style=style),
+            line.margin,
+            line.decisive,
+        )
+        grid.add_row(*(Text(cell) if isinstance(cell, str) else cell for cell in cells))
+    return grid
+
+
+def _spec(spec: SpecVerdict, console: Console, *, reasons: bool = True) -> None:
     title = Text(f"{spec.id} {spec.title}", style="bold")
     title.append(f"   {spec.vehicle}, {spec.condition}   {spec.file}", style="not bold")
     console.print(title, highlight=False)
@@ -48,7 +78,7 @@ def _spec(spec: SpecVerdict, console: Console) -> None:
     console.print()
     if spec.criteria:
         console.print(_criteria(spec, wide=console.width >= _SIGNAL_COLUMNS))
-    for name, reason in words.assumptions(spec):
+    for name, reason in words.assumptions(spec) if reasons else ():
         _note("assumed limit", f"{name}: {reason}", console)
     for name, message in words.messages(spec):
         _note("note", f"{name}: {message}", console)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from lmap.report.numbers import percent, signed
 from lmap.verdict import Acceptance, CriterionVerdict, Outcome, SpecVerdict
@@ -20,7 +21,7 @@ VERDICTS = {
 }
 
 
-WHOLE_RUN = frozenset({"mean", "percentile", "rms"})
+WHOLE_RUN = frozenset({"mean", "mean_comfort", "median", "percentile", "rms", "vibration_total"})
 """Statistics of a run as a whole: their value has no place in it."""
 
 
@@ -57,6 +58,38 @@ def headline(criteria: Iterable[CriterionVerdict]) -> str:
         margin = f"{signed(smallest.margin, smallest.unit)}, {percent(smallest.margin_percent)}"
         text += f"; smallest margin {margin} ({smallest.name}, {smallest.case})"
     return text
+
+
+@dataclass(frozen=True, slots=True)
+class SummaryLine:
+    """One spec in the list of all."""
+
+    id: str
+    title: str
+    outcome: Outcome
+    margin: str
+    """Smallest, in per cent of its limit."""
+    decisive: str
+    """The criterion that the verdict hangs on, with its case."""
+
+
+def summary(acceptance: Acceptance) -> list[SummaryLine]:
+    """A line for each spec, in the order in which they were given."""
+    lines = []
+    for spec in acceptance.specs:
+        worst = [one for one in spec.criteria if one.outcome is spec.outcome]
+        smallest = least(one for one in worst if one.judged) or next(iter(worst), None)
+        known = smallest is not None and smallest.margin_percent is not None
+        lines.append(
+            SummaryLine(
+                id=spec.id,
+                title=spec.title,
+                outcome=spec.outcome,
+                margin=percent(smallest.margin_percent) if smallest is not None and known else "",
+                decisive="" if smallest is None else f"{smallest.name}, {smallest.case}",
+            )
+        )
+    return lines
 
 
 def least(criteria: Iterable[CriterionVerdict]) -> CriterionVerdict | None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from lmap.signals.base import Filter, Link, Reading, Statistic, signal_of
-from lmap.signals.filters import Lowpass, RemoveMean, Skip
+from lmap.signals.base import Filter, Joint, Link, Reading, Statistic, signal_of
+from lmap.signals.comfort import MeanComfort, Sperling, VibrationTotal, Weight
+from lmap.signals.filters import Bandpass, BandpassDominant, Lowpass, MovingMean, RemoveMean, Section, Skip
 from lmap.signals.statistic import (
     AveragePeak,
     MaxAbs,
     Maximum,
     Mean,
+    Median,
     Minimum,
     PeakToPeak,
     Percentile,
@@ -21,22 +23,31 @@ from lmap.signals.statistic import (
 # Keep this list sorted by name.
 LINKS: tuple[type[Link], ...] = (
     AveragePeak,
+    Bandpass,
+    BandpassDominant,
     Lowpass,
     MaxAbs,
     Maximum,
     Mean,
+    MeanComfort,
+    Median,
     Minimum,
+    MovingMean,
     PeakToPeak,
     Percentile,
     RemoveMean,
     Rms,
+    Section,
     Skip,
     SlidingMean,
     SlidingRms,
+    Sperling,
     Sustained,
+    VibrationTotal,
+    Weight,
 )
 """Every link that a chain may name."""
 
 BY_NAME: dict[str, type[Link]] = {link.name: link for link in LINKS}
 
-__all__ = ["BY_NAME", "LINKS", "Filter", "Link", "Reading", "Statistic", "signal_of"]
+__all__ = ["BY_NAME", "LINKS", "Filter", "Joint", "Link", "Reading", "Statistic", "signal_of"]

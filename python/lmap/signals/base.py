@@ -7,6 +7,7 @@ signal, a statistic turns it into a reading.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
@@ -74,6 +75,10 @@ class Statistic(Link):
     """Whether a signal's motion to one side alone gives the number: the other side then needs `absolute`."""
     largest: ClassVar[bool] = False
     """Whether the number is the largest of many levels: that it keeps a least value says little of the rest."""
+    reads: ClassVar[str | None] = None
+    """Unit that the signal must come in; none: the criterion's."""
+    gives: ClassVar[str | None] = None
+    """Unit of the number; none: the signal's."""
 
     @abstractmethod
     def read(self, signal: pl.DataFrame) -> Reading:
@@ -83,6 +88,20 @@ class Statistic(Link):
     def is_magnitude(self) -> bool:
         """Whether the value is never negative, so that a limit line stands on both sides of the signal."""
         return False
+
+
+class Joint(Statistic):
+    """A statistic that makes one number of several signals: the directions x, y and z, in this order."""
+
+    count: ClassVar[int] = 3
+
+    def read(self, signal: pl.DataFrame) -> Reading:
+        """One signal alone is not enough."""
+        raise JudgementProblem(f"{self.name} joins {self.count} signals: they are shown as recorded")
+
+    @abstractmethod
+    def read_together(self, signals: Sequence[pl.DataFrame]) -> Reading:
+        """The number; a `JudgementProblem` where there is none."""
 
 
 COUNTED = ("step", "mode", "critical_speed")

@@ -6,11 +6,14 @@ out: a record shorter than the window has none, which is an error.
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, Self
 
+import numpy as np
 import polars as pl
+from pydantic import model_validator
 
 from lmap.errors import JudgementProblem
+from lmap.signals.base import Link, Positive
 
 _TICKS = 1e9
 """Ticks per second or metre: windows are counted in whole nanoseconds or nanometres, so that rounding of
@@ -23,8 +26,13 @@ def slide(
     *,
     over: Literal["t", "s"],
     length: float,
+    step: float | None = None,
 ) -> pl.DataFrame:
-    """`t`, `s`, `x` of every full window: its middle, and the function of its samples."""
+    """`t`, `s`, `x` of every full window: its middle, and the function of its samples.
+
+    A window ends at every sample, or with `step` at the first sample after every so many s or m. One that holds a
+    single sample says nothing about a stretch and is refused.
+    """
     column = signal.get_column(over)
     unit = "s" if over == "t" else "m"
     if not column.is_sorted():
@@ -35,6 +43,10 @@ def slide(
         raise JudgementProblem(
             f"the record of {span:.4g} {unit} is shorter than the window of {length:g} {unit}"
         )
+    if np.diff(column.to_numpy()).max(initial=0.0) > length * (1.0 + 1e-9):
+        raise JudgementProblem(
+            f"a window of {length:g} {unit} holds less than two samples: set run.output_step lower"
+        )
     other = "s" if over == "t" else "t"
     rolling = {
         "min": pl.col("x").rolling_min_by("tick", f"{ticks}i", closed="both"),
@@ -43,10 +55,39 @@ def slide(
         "std": pl.col("x").rolling_std_by("tick", f"{ticks}i", closed="both", ddof=0),
     }[function]
     middle = pl.col(other).rolling_mean_by("tick", f"{ticks}i", closed="both").alias(other)
-    return (
+    windows = (
         signal.with_columns(tick=((pl.col(over) - pl.col(over).first()) * _TICKS).round().cast(pl.Int64))
         .with_columns(rolling.alias("x"), middle)
         .filter(pl.col("tick") >= ticks)
         .with_columns(pl.col(over) - length / 2.0)
-        .select("t", "s", "x")
     )
+    if step is not None:
+        number = (pl.col("tick") - ticks) // max(1, round(step * _TICKS))
+        windows = windows.filter(number.diff().fill_null(1) > 0)
+    return windows.select("t", "s", "x")
+
+
+class Windowed(Link):
+    """A link with a sliding window of time or of distance, at every sample or every `step_s` or `step_m`."""
+
+    window_s: Positive | None = None
+    window_m: Positive | None = None
+    step_s: Positive | None = None
+    step_m: Positive | None = None
+
+    @model_validator(mode="after")
+    def _one_window(self) -> Self:
+        if (self.window_s is None) == (self.window_m is None):
+            raise ValueError("exactly one of window_s and window_m")
+        if (self.window_s is None and self.step_s is not None) or (
+            self.window_m is None and self.step_m is not None
+        ):
+            raise ValueError("step_s with window_s, step_m with window_m")
+        return self
+
+    def slide(self, signal: pl.DataFrame, function: Literal["min", "max", "mean", "std"]) -> pl.DataFrame:
+        """The function of every window, at its middle."""
+        if self.window_s is not None:
+            return slide(signal, function, over="t", length=self.window_s, step=self.step_s)
+        assert self.window_m is not None  # the validator's other branch
+        return slide(signal, function, over="s", length=self.window_m, step=self.step_m)

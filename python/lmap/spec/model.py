@@ -179,6 +179,8 @@ class Spec(BaseModel):
     condition: str | None = None
     track: dict[str, Any] = Field(default_factory=dict)
     run: RunPart = Field(default_factory=RunPart)
+    test: dict[str, Any] = Field(default_factory=dict)
+    """The procedure's own numbers, checked by its `SETTINGS`."""
     set: dict[str, Any] = Field(default_factory=dict)
     """Named parameters of the vehicle and keys of the spec; see `overrides`."""
     sign_off: SignOff | None = None

@@ -1,6 +1,6 @@
 """One rule for `--set`, `[set]` and Python's `set=`.
 
-A dotted key whose first part is `track`, `run`, `vehicle` or `condition` is a key of the spec; any other is a
+A dotted key whose first part is `track`, `run`, `test`, `vehicle` or `condition` is a key of the spec; any other is a
 named parameter of the vehicle. Applied before anything is expanded, `[set]` first, then what the caller
 gives. `run.speed_kmh` replaces `run.speed` and the other way round.
 """
@@ -14,8 +14,11 @@ from typing import Any
 from lmap import toml
 from lmap.errors import InputProblem, Problem, nearest_hint
 
-SPEC_KEYS = ("condition", "run", "track", "vehicle")
+SPEC_KEYS = ("condition", "run", "test", "track", "vehicle")
 """First parts of a key that mean the spec."""
+
+_EXAMPLES = {"run": "run.speed_kmh", "test": "test.dip_angle", "track": "track.length"}
+"""Tables of the spec, with one of their keys."""
 
 _SAME: dict[tuple[str, ...], tuple[str, ...]] = {
     ("run", "speed"): ("run", "speed_kmh"),
@@ -100,10 +103,8 @@ def apply(document: Mapping[str, Any], settings: Mapping[str, Any]) -> tuple[dic
             allowed = f'"{path[0]}" alone, or the name of a parameter of the vehicle'
             problems.append(Problem(key=("set", key), found=f'"{key}"', allowed=allowed))
             continue
-        if path[0] in ("track", "run") and (len(path) == 1 or not all(path)):
-            allowed = (
-                f'a key of [{path[0]}], e.g. "{"run.speed_kmh" if path[0] == "run" else "track.length"}"'
-            )
+        if path[0] in _EXAMPLES and (len(path) == 1 or not all(path)):
+            allowed = f'a key of [{path[0]}], e.g. "{_EXAMPLES[path[0]]}"'
             hint = nearest_hint(key, ())
             problems.append(Problem(key=("set", key), found=f'"{key}"', allowed=allowed, hint=hint))
             continue

@@ -17,7 +17,7 @@ from lmap.spec.case import VehicleData
 
 Point = tuple[float, float, float]
 
-_LISTS = ("body", "connection", "sensor", "wheelset")
+_LISTS = ("body", "connection", "gap", "sensor", "wheelset")
 _POSITIONS = ("position", "positions")
 _OWN = ("parameters", "condition", "template", "use", "include")
 _COMMON = ("axes", "between", "carries_weight", "kind", "mirror", "name", "position", "positions", "preload")

@@ -3,7 +3,6 @@
 //!
 //! All but time stepping are of the design track: irregularities are refused.
 
-pub mod coordinate;
 pub mod critical_speed;
 pub mod modal;
 mod naming;

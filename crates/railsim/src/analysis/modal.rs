@@ -11,10 +11,10 @@
 use nalgebra::{Complex, DMatrix};
 use serde_json::json;
 
-use crate::analysis::coordinate::{self, Coordinate};
 use crate::analysis::naming;
 use crate::analysis::{Stand, Table};
 use crate::body::coordinate::{S, THETA};
+use crate::dynamics::coordinate::{self, Coordinate};
 use crate::dynamics::linearise::jacobian;
 use crate::dynamics::scratch::Wheel;
 use crate::dynamics::state::PAIR;

@@ -5,10 +5,10 @@
 
 use serde_json::json;
 
-use crate::analysis::coordinate::{self, Coordinate};
 use crate::analysis::{Stand, Table};
-use crate::dynamics::Model;
+use crate::dynamics::coordinate::{self, Coordinate};
 use crate::dynamics::equilibrium::{self, Conditions};
+use crate::dynamics::{Contact, Model};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::System;
 use crate::math::Vec3;
@@ -18,7 +18,7 @@ use crate::schema::Case;
 use crate::schema::run::{Axis, Load};
 
 /// Columns before the channels of the vehicle.
-const OWN: [&str; 5] = ["step", "curvature", "cant", "gradient", "unbalanced"];
+const OWN: [&str; 6] = ["step", "curvature", "cant", "gradient", "unbalanced", "flange_angle"];
 
 /// A load with its names resolved.
 #[derive(Debug)]
@@ -81,7 +81,22 @@ fn force(model: &Model, body: &str, axis: Axis, position: Option<[f64; 3]>, at: 
 
 fn actions(model: &Model, case: &Case) -> Result<Vec<Action>> {
     let at = KeyPath::of("run.load");
-    case.run.load.iter().enumerate().map(|(i, load)| Action::new(model, load, &at.index(i))).collect()
+    let mut actions: Vec<Action> = Vec::new();
+    for (i, load) in case.run.load.iter().enumerate() {
+        let mut action = Action::new(model, load, &at.index(i))?;
+        if let Action::Force { name, .. } = &mut action {
+            // Several forces along one axis of a body: `carbody.force_z`, `carbody.2.force_z`, ...
+            let column = |n: usize| match name.rsplit_once('.') {
+                Some((body, part)) if n > 1 => format!("{body}.{n}.{part}"),
+                _ => name.clone(),
+            };
+            let taken: Vec<_> = actions.iter().filter_map(Action::column).collect();
+            let own = (1..).map(column).find(|c| !taken.contains(c));
+            *name = own.unwrap_or_default();
+        }
+        actions.push(action);
+    }
+    Ok(actions)
 }
 
 /// Names of all columns.
@@ -121,8 +136,8 @@ fn path(loads: &[Load], steps: u32) -> Vec<Vec<f64>> {
 /// Runs a case of kind `equilibrium` or `quasi_static`.
 ///
 /// Columns: load `step`, `curvature`, `cant` and `gradient` at the vehicle's centre, `unbalanced` lateral acceleration in the
-/// plane of the rails (V2/R cos cant - g sin cant, + to the left of a right-hand curve, that is outward), each force as
-/// `<body>.force_y`, what holds a displaced coordinate as `<coordinate>.reaction`, then the channels of a run in time.
+/// plane of the rails (V2/R cos cant - g sin cant, + to the left of a right-hand curve, that is outward), the wheel profile's
+/// `flange_angle` (NaN for the textbook's contact), each force as `<body>.force_y`, what holds a displaced coordinate as `<coordinate>.reaction`, then the channels of a run in time.
 ///
 /// # Errors
 /// Faults of the case; [`Error::NotConverged`] where there is no balance at the first load step. One that is lost on the way is
@@ -140,20 +155,23 @@ pub fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
         _ => None,
     }));
     let mut table = Table::new(names(&stand.model, &actions));
+    let way = Way { stand: &stand, actions: &actions, case, held: &held, base: &base };
     let mut ended = Ended::Complete;
+    let mut last: Vec<f64> = way.nothing(&path[0]);
     for (step, values) in path.iter().enumerate() {
         if control.stop() {
             return Err(Error::Interrupted);
         }
         control.progress(step as f64, 0.0, step as f64 / path.len() as f64);
-        match balance(&stand, &actions, &held, &base, &mut x, values, speed(case, &actions, values)) {
-            Ok(row) => table.push(std::iter::once(step as f64).chain(row)),
+        match way.go(&mut x, &last, values, 0) {
+            Ok(()) => table.push(std::iter::once(step as f64).chain(way.row(&x, values))),
             Err(error) if step == 0 => return Err(error),
             Err(error) => {
                 ended = Ended::Diverged(error);
                 break;
             }
         }
+        last.clone_from(values);
     }
     let rows = table.columns.first().map_or(0, Vec::len);
     let statistics = json!({ "analysis": case.run.kind.name(), "load_steps": rows, "place_m": stand.s });
@@ -165,46 +183,92 @@ fn speed(case: &Case, actions: &[Action], values: &[f64]) -> f64 {
     own.map_or(case.run.speed, |(_, v)| *v)
 }
 
-/// Balance under the given values of all loads, and its row without the step.
-fn balance(
-    stand: &Stand,
-    actions: &[Action],
-    held: &[usize],
-    base: &[f64],
-    x: &mut Vec<f64>,
-    values: &[f64],
-    speed: f64,
-) -> Result<Vec<f64>> {
-    let mut push = Vec::new();
-    let before = x.clone();
-    for (action, value) in actions.iter().zip(values) {
-        match action {
-            Action::Force { push: unit, .. } => push.extend(unit.iter().map(|(i, by)| (*i, by * value))),
-            Action::Displacement(c) => x[c.q] = base[c.q] + value,
-            Action::Speed => {}
+/// Halvings of a load step whose end is out of reach from its beginning.
+const DEEPEST: u32 = 4;
+
+/// What does not change along a path of loads.
+struct Way<'a> {
+    stand: &'a Stand,
+    actions: &'a [Action],
+    case: &'a Case,
+    held: &'a [usize],
+    base: &'a [f64],
+}
+
+impl Way<'_> {
+    /// The values of loads that do nothing, at the speed of the first step.
+    fn nothing(&self, first: &[f64]) -> Vec<f64> {
+        let none =
+            |(action, value): (&Action, &f64)| if matches!(action, Action::Speed) { *value } else { 0.0 };
+        self.actions.iter().zip(first).map(none).collect()
+    }
+
+    /// Accelerations by the loads.
+    fn push(&self, values: &[f64]) -> Vec<(usize, f64)> {
+        let mut push = Vec::new();
+        for (action, value) in self.actions.iter().zip(values) {
+            if let Action::Force { push: unit, .. } = action {
+                push.extend(unit.iter().map(|(i, by)| (*i, by * value)));
+            }
         }
+        push
     }
-    let mut system = stand.system(speed);
-    let since = (stand.model.map().memory > 0).then_some(&before[..]);
-    equilibrium::settle(&mut system, x, Conditions { speed, held, push: &push, since })?;
-    let mut dx = vec![0.0; x.len()];
-    system.rhs(0.0, x, &mut dx);
-    let mut recorder = Recorder::new(&stand.model, 1);
-    recorder.record(&system, 0.0, x, &dx);
-    for (i, by) in &push {
-        dx[*i] += by;
-    }
-    let [curvature, cant, gradient] = stand.curve();
-    let unbalanced = speed * speed * curvature * cant.cos() - stand.model.gravity * cant.sin();
-    let mut row = vec![curvature, cant, gradient, unbalanced];
-    for (action, value) in actions.iter().zip(values) {
-        match action {
-            Action::Force { .. } => row.push(*value),
-            Action::Displacement(c) => row.push(-c.inertia * dx[c.u]),
-            Action::Speed => {}
+
+    /// From the balance at `from` to that at `to`, with stops on the way where it is too far.
+    fn go(&self, x: &mut Vec<f64>, from: &[f64], to: &[f64], depth: u32) -> Result<()> {
+        let before = x.clone();
+        let speed = speed(self.case, self.actions, to);
+        let mut system = self.stand.system(speed);
+        let push = self.push(to);
+        let since = (self.stand.model.map().memory > 0).then_some(&before[..]);
+        let conditions = Conditions { speed, held: self.held, push: &push, since };
+        let moved = |(action, value): (&Action, &f64)| match action {
+            Action::Displacement(c) => Some((c.q, self.base[c.q] + value - before[c.q])),
+            _ => None,
+        };
+        let moves: Vec<(usize, f64)> = self.actions.iter().zip(to).filter_map(moved).collect();
+        if equilibrium::follow(&mut system, x, conditions, &moves).is_ok() {
+            return Ok(());
         }
+        if depth < DEEPEST && from != to {
+            let middle: Vec<f64> = from.iter().zip(to).map(|(a, b)| 0.5 * (a + b)).collect();
+            self.go(x, from, &middle, depth + 1)?;
+            return self.go(x, &middle, to, depth + 1);
+        }
+        for (q, by) in moves {
+            x[q] += by;
+        }
+        equilibrium::settle(&mut system, x, conditions)
     }
-    let recorded = recorder.into_columns().into_iter().filter(|(name, _)| name != "t");
-    row.extend(recorded.map(|(_, values)| values[0]));
-    Ok(row)
+
+    /// The row of a balance without its step.
+    fn row(&self, x: &[f64], values: &[f64]) -> Vec<f64> {
+        let stand = self.stand;
+        let speed = speed(self.case, self.actions, values);
+        let mut system = stand.system(speed);
+        let mut dx = vec![0.0; x.len()];
+        system.rhs(0.0, x, &mut dx);
+        let mut recorder = Recorder::new(&stand.model, 1);
+        recorder.record(&system, 0.0, x, &dx);
+        for (i, by) in self.push(values) {
+            dx[i] += by;
+        }
+        let [curvature, cant, gradient] = stand.curve();
+        let unbalanced = speed * speed * curvature * cant.cos() - stand.model.gravity * cant.sin();
+        let flange_angle = match &stand.model.contact {
+            Contact::Profiles { table, .. } => table.flange_angle(),
+            Contact::Textbook(_) => f64::NAN,
+        };
+        let mut row = vec![curvature, cant, gradient, unbalanced, flange_angle];
+        for (action, value) in self.actions.iter().zip(values) {
+            match action {
+                Action::Force { .. } => row.push(*value),
+                Action::Displacement(c) => row.push(-c.inertia * dx[c.u]),
+                Action::Speed => {}
+            }
+        }
+        let recorded = recorder.into_columns().into_iter().filter(|(name, _)| name != "t");
+        row.extend(recorded.map(|(_, values)| values[0]));
+        row
+    }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::bushing_matrix::turned;
 use super::{ForceLaw, Mount, Relative, Wrench, not_negative};
 use crate::error::{Fault, KeyPath};
-use crate::math::{Mat3, Vec3};
+use crate::math::Vec3;
 
 /// Stiffness and damping against relative roll.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -56,10 +56,6 @@ impl ForceLaw for AntiRollBar {
     fn dissipation(&self, motion: &Relative, _mount: &Mount, _memory: &[f64]) -> f64 {
         let (_, rate, _) = Self::roll(motion);
         self.damping * rate * rate
-    }
-
-    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
-        Mat3::zeros()
     }
 
     fn faults(&self, at: &KeyPath) -> Vec<Fault> {

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, directed, ends_along, not_negative};
 use crate::error::{Fault, KeyPath};
+use crate::math::Vec3;
 use crate::math::table::Table;
-use crate::math::{Mat3, Vec3};
 
 /// Which way a stop is met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -100,10 +100,6 @@ impl ForceLaw for BumpStop {
 
     fn dissipation(&self, _motion: &Relative, _mount: &Mount, _memory: &[f64]) -> f64 {
         0.0
-    }
-
-    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
-        Mat3::zeros()
     }
 
     fn check_ends(&self, between: &Vec3) -> Result<(), (String, String)> {

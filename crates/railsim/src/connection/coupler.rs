@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, ends_along, not_negative};
 use crate::error::{Fault, KeyPath};
+use crate::math::Vec3;
 use crate::math::table::Table;
-use crate::math::{Mat3, Vec3};
 
 /// Coupler with draft gear.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -84,10 +84,6 @@ impl ForceLaw for Coupler {
         let s = Along::Line.stretch(motion, mount);
         let (elastic, whole) = self.tension(s.x, s.rate);
         (whole - elastic) * s.rate
-    }
-
-    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
-        Mat3::zeros()
     }
 
     fn check_ends(&self, between: &Vec3) -> Result<(), (String, String)> {

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Along, ForceLaw, Mount, Relative, Wrench, ends_along, not_negative, positive};
 use crate::error::{Fault, KeyPath};
-use crate::math::{Mat3, Vec3};
+use crate::math::Vec3;
 
 /// Time in which a slider returns to its limit, s.
 pub const RELAXATION_TIME: f64 = 1e-3;
@@ -86,10 +86,6 @@ impl ForceLaw for Friction {
 
     fn memory_speed(&self) -> f64 {
         1.0 / RELAXATION_TIME
-    }
-
-    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
-        Mat3::zeros()
     }
 
     fn check_ends(&self, between: &Vec3) -> Result<(), (String, String)> {

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, directed, ends_along, positive};
 use crate::error::{Fault, KeyPath};
+use crate::math::Vec3;
 use crate::math::table::{Interpolation, Table};
-use crate::math::{Mat3, Vec3};
 
 /// Damper in series with a spring, along the line between two points or along an axis.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -78,10 +78,6 @@ impl ForceLaw for Maxwell {
     fn memory_speed(&self) -> f64 {
         let least = self.table.as_ref().map_or(self.damping.unwrap_or(0.0), Table::least_slope);
         self.stiffness / least
-    }
-
-    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
-        Mat3::zeros()
     }
 
     fn check_ends(&self, between: &Vec3) -> Result<(), (String, String)> {

@@ -113,9 +113,11 @@ pub trait ForceLaw {
     fn memory_speed(&self) -> f64 {
         0.0
     }
-    /// Translational stiffness in the design position, N/m, with which preloads are shared out; zero for a law that
-    /// cannot carry.
-    fn nominal_stiffness(&self, between: &Vec3) -> Mat3;
+    /// Translational stiffness in the design position, N/m, with which preloads are shared out; zero, as here, for a law
+    /// that cannot carry.
+    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
+        Mat3::zeros()
+    }
     /// Sets what `mount` carries in the design position: `force` on B (N) where one has been solved for it, else what
     /// the law itself says (its free length).
     ///

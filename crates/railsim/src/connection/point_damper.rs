@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, directed, ends_along};
 use crate::error::{Fault, KeyPath};
+use crate::math::Vec3;
 use crate::math::table::Table;
-use crate::math::{Mat3, Vec3};
 
 /// Viscous damper between two points, along their line or along an axis.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -54,10 +54,6 @@ impl ForceLaw for PointDamper {
     fn dissipation(&self, motion: &Relative, mount: &Mount, _memory: &[f64]) -> f64 {
         let s = self.along.stretch(motion, mount);
         self.law().force(s.rate) * s.rate
-    }
-
-    fn nominal_stiffness(&self, _between: &Vec3) -> Mat3 {
-        Mat3::zeros()
     }
 
     fn check_ends(&self, between: &Vec3) -> Result<(), (String, String)> {

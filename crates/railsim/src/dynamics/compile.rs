@@ -1,13 +1,15 @@
 //! A case, as written, becomes a [`Model`]: names turn into indices, points into levers, preloads are solved, wheel and
 //! rail profiles into a geometry table. After this nobody looks at the document.
 
+use std::sync::Arc;
+
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Mount};
 use crate::contact::friction::FrictionField;
-use crate::contact::geometry_table::{GeometryTable, Placement};
+use crate::contact::geometry_table::{GeometryTable, Pair, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
-use crate::dynamics::model::{Contact, Link, Model, Sensor, SpeedHold, Support};
+use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::math::{Vec3, rotation};
@@ -66,7 +68,26 @@ pub fn model(case: &Case) -> Result<Model> {
         case.run.gravity,
     )?;
     model.guided = guided(vehicle);
+    model.gaps = gaps(vehicle)?;
     Ok(model)
+}
+
+fn gaps(vehicle: &Vehicle) -> Result<Vec<Gap>> {
+    vehicle
+        .gaps
+        .iter()
+        .map(|gap| {
+            let [from, to] = gap.points.map(Vec3::from);
+            let a = index(vehicle, &gap.between[0], &gap.key)?;
+            let b = index(vehicle, &gap.between[1], &gap.key)?;
+            Ok(Gap {
+                name: gap.name.clone(),
+                bodies: [a, b],
+                points: [from - position(vehicle, a), to - position(vehicle, b)],
+                direction: (to - from).normalize(),
+            })
+        })
+        .collect()
 }
 
 /// Bodies that are led along the track, by index.
@@ -74,14 +95,20 @@ fn guided(vehicle: &Vehicle) -> Vec<usize> {
     vehicle.bodies.iter().enumerate().filter(|(_, b)| b.guided).map(|(i, _)| i).collect()
 }
 
-/// Geometry table of the case's wheel on its rail, without the rest of the model; averaged over the patch under the mean static wheel load.
+/// Geometry table of the case's wheel on its rail, without the rest of the model, averaged over the patch under the mean
+/// static wheel load; out of [`Case::tables`] where it has been built before.
 ///
 /// # Errors
 /// Faults in the profiles.
-pub fn geometry_table(case: &Case) -> Result<GeometryTable> {
-    let (wheel, rail, placement) = contact_pair(case)?;
+pub fn geometry_table(case: &Case) -> Result<Arc<GeometryTable>> {
+    let placement = placement(case)?;
+    let wheel = points(case, &case.run.wheel_profile)?.to_vec();
+    let rail = points(case, &case.track.rail_profile)?.to_vec();
     let penetration = placement.penetration_under(wheel_load(case));
-    GeometryTable::build_at(&wheel, &rail, &placement, penetration)
+    case.tables.get(Pair { wheel, rail, placement, penetration }, || {
+        let (wheel, rail, placement) = contact_pair(case)?;
+        GeometryTable::build_at(&wheel, &rail, &placement, penetration)
+    })
 }
 
 /// Mean static load of a wheel, N.
@@ -99,6 +126,13 @@ pub fn side(case: &Case) -> Result<Side> {
 }
 
 fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
+    let placement = placement(case)?;
+    let wheel = profile(case, &case.run.wheel_profile, ProfileKind::Wheel)?;
+    let rail = profile(case, &case.track.rail_profile, ProfileKind::Rail)?;
+    Ok((wheel, rail, placement))
+}
+
+fn placement(case: &Case) -> Result<Placement> {
     let radius = case.vehicle.wheelsets.first();
     let Some(set) = radius else {
         return Err(Error::input(Fault::new(
@@ -119,9 +153,7 @@ fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
             format!("the same as the first wheelset's, {} m and {} m", set.radius, set.tape_half_distance),
         )));
     }
-    let wheel = profile(case, &case.run.wheel_profile, ProfileKind::Wheel)?;
-    let rail = profile(case, &case.track.rail_profile, ProfileKind::Rail)?;
-    let placement = Placement {
+    Ok(Placement {
         gauge: case.track.gauge,
         gauge_point_depth: case.track.gauge_point_depth,
         rail_inclination: case.track.rail_inclination,
@@ -129,16 +161,22 @@ fn contact_pair(case: &Case) -> Result<(Profile, Profile, Placement)> {
         wheel_radius: set.radius,
         youngs_modulus: case.vehicle.contact.youngs_modulus,
         poisson: case.vehicle.contact.poisson,
-    };
-    Ok((wheel, rail, placement))
+    })
 }
 
 fn profile(case: &Case, name: &str, kind: ProfileKind) -> Result<Profile> {
-    let at = KeyPath::of("profiles").key(name).key("points");
-    let Some(data) = case.profiles.get(name) else {
-        return Err(Error::input(Fault::new(at, "nothing", "the points of the profile")));
-    };
-    Profile::new(&data.points, kind, &at)
+    Profile::new(points(case, name)?, kind, &points_key(name))
+}
+
+fn points<'a>(case: &'a Case, name: &str) -> Result<&'a [[f64; 2]]> {
+    match case.profiles.get(name) {
+        Some(data) => Ok(&data.points),
+        None => Err(Error::input(Fault::new(points_key(name), "nothing", "the points of the profile"))),
+    }
+}
+
+fn points_key(name: &str) -> KeyPath {
+    KeyPath::of("profiles").key(name).key("points")
 }
 
 fn contact(case: &Case) -> Result<Contact> {
@@ -148,7 +186,7 @@ fn contact(case: &Case) -> Result<Contact> {
     let settings = &case.vehicle.contact;
     let wheel_load = wheel_load(case);
     Ok(Contact::Profiles {
-        table: Box::new(geometry_table(case)?),
+        table: geometry_table(case)?,
         law: case.run.creep.with_poisson(settings.poisson),
         shear_modulus: settings.youngs_modulus / (2.0 * (1.0 + settings.poisson)),
         dissipation: if wheel_load > 0.0 { settings.damping / wheel_load } else { 0.0 },

@@ -21,11 +21,22 @@ const TOLERANCE: f64 = 1e-7;
 /// Largest acceleration left where rounding of stiffer springs lets no step get below [`TOLERANCE`].
 const ROUNDING: f64 = 1e-5;
 const MOST_ITERATIONS: usize = 40;
+/// Iterations after which a step that is followed from a balance nearby is better taken in two.
+const FEW_ITERATIONS: usize = 10;
 /// Implicit steps of a relaxation, at most.
 const MOST_RELAXATIONS: usize = 300;
 /// First step of a relaxation in pseudo-time, s2: a few times the inverse square of the fastest mode (some 2500 rad/s).
 const FIRST_RELAXATION: f64 = 1e-6;
 const INCREMENT: f64 = 1e-7;
+/// Of a singular value decomposition; far more than it takes.
+const MOST_SWEEPS: usize = 10_000;
+/// The same for what connections remember: a slider passes its limit by no more than its speed on the way times a millisecond.
+const MEMORY_INCREMENT: f64 = 1e-11;
+/// Share by which a full step of Newton's has to lower the residual (Armijo's rule).
+const SUFFICIENT: f64 = 0.1;
+
+/// Place of the rate of spin among a body's speeds.
+const SPIN: usize = 4;
 
 /// One unknown: an index into the state, or the spin rate of a wheelset.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -160,7 +171,7 @@ pub fn settle(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, conditions: Cond
     let held = with_free_place(system.model, conditions.held);
     let conditions = Conditions { held: &held, ..conditions };
     let mut problem = Problem::new(system, x, conditions);
-    let outcome = problem.newton().or_else(|first| {
+    let outcome = problem.newton(MOST_ITERATIONS).or_else(|first| {
         problem.restart(x);
         problem.relax().map_err(|_| first)
     });
@@ -177,7 +188,27 @@ pub fn settle(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, conditions: Cond
 pub fn newton(system: &mut VehicleSystem<'_>, x: &mut Vec<f64>, conditions: Conditions<'_>) -> Result<()> {
     let held = with_free_place(system.model, conditions.held);
     let mut problem = Problem::new(system, x, Conditions { held: &held, ..conditions });
-    problem.newton()?;
+    problem.newton(MOST_ITERATIONS)?;
+    x.clone_from(&problem.x);
+    Ok(())
+}
+
+/// From a balance `x` to one nearby, where held coordinates (indices into the state) have moved by `moves` and loads have
+/// changed: along the tangent, then by a few of Newton's steps. Wheels of an axle that is raised are raised with it, so that no
+/// contact parts on the way. `x` is left as it was on failure.
+///
+/// # Errors
+/// [`Error::NotConverged`]: the two balances are too far apart.
+pub fn follow(
+    system: &mut VehicleSystem<'_>,
+    x: &mut Vec<f64>,
+    conditions: Conditions<'_>,
+    moves: &[(usize, f64)],
+) -> Result<()> {
+    let held = with_free_place(system.model, conditions.held);
+    let mut problem = Problem::new(system, x, Conditions { held: &held, ..conditions });
+    problem.predict(moves);
+    problem.newton(FEW_ITERATIONS)?;
     x.clone_from(&problem.x);
     Ok(())
 }
@@ -275,23 +306,58 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
     }
 
     fn restart(&mut self, x: &[f64]) {
-        let model = self.system.model;
-        self.spin = model.wheelsets.iter().map(|w| -self.conditions.speed / w.radius).collect();
+        let (model, map) = (self.system.model, self.system.model.map());
+        let speed = self.conditions.speed;
+        let spin = |(w, set): (usize, &crate::body::Wheelset)| {
+            // That of the balance before, where it is one of this speed.
+            let (before, pure) = (x[map.u(model.bodies.len() + w).start + SPIN], -speed / set.radius);
+            if speed > 0.0 && (before / pure - 1.0).abs() < 0.1 { before } else { pure }
+        };
+        self.spin = model.wheelsets.iter().enumerate().map(spin).collect();
         self.x = x.to_vec();
+    }
+
+    /// Moves held coordinates and, by the tangent, all others with them.
+    fn predict(&mut self, moves: &[(usize, f64)]) {
+        let most = moves.iter().fold(0.0_f64, |most, (_, by)| most.max(by.abs()));
+        if most == 0.0 {
+            return;
+        }
+        let n = self.unknowns.len();
+        let (mut r, mut up, mut down) = (DVector::zeros(n), DVector::zeros(n), DVector::zeros(n));
+        let jacobian = self.jacobian();
+        self.residual(&mut r);
+        let share = INCREMENT / most;
+        self.move_by(moves, share);
+        self.residual(&mut up);
+        self.move_by(moves, -2.0 * share);
+        self.residual(&mut down);
+        self.move_by(moves, share + 1.0);
+        r += (up - down) / (2.0 * share);
+        self.shift_all(&descend(jacobian, &r), -1.0);
+    }
+
+    fn move_by(&mut self, moves: &[(usize, f64)], share: f64) {
+        for (q, by) in moves {
+            self.x[*q] += share * by;
+        }
     }
 
     fn jacobian(&mut self) -> DMatrix<f64> {
         let n = self.unknowns.len();
         let mut jacobian = DMatrix::zeros(n, n);
         let (mut up, mut down) = (DVector::zeros(n), DVector::zeros(n));
+        let memory = self.system.model.map().memory();
         for j in 0..n {
             let u = self.unknowns[j];
-            self.shift(u, INCREMENT);
+            let remembered = matches!(u, Unknown::State(i) if memory.contains(&i));
+            let by = if remembered { MEMORY_INCREMENT } else { INCREMENT };
+            self.shift(u, by);
             self.residual(&mut up);
-            self.shift(u, -2.0 * INCREMENT);
+            self.shift(u, -2.0 * by);
             self.residual(&mut down);
-            self.shift(u, INCREMENT);
-            jacobian.set_column(j, &((&up - &down) / (2.0 * INCREMENT)));
+            self.shift(u, by);
+            jacobian.set_column(j, &((&up - &down) / (2.0 * by)));
         }
         jacobian
     }
@@ -303,23 +369,24 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
         }
     }
 
-    fn newton(&mut self) -> Result<()> {
+    fn newton(&mut self, most: usize) -> Result<()> {
         let n = self.unknowns.len();
         let (mut r, mut trial) = (DVector::zeros(n), DVector::zeros(n));
         self.residual(&mut r);
         let mut iterations = 0;
         while size(&r) > TOLERANCE {
-            if iterations == MOST_ITERATIONS || !size(&r).is_finite() {
+            if iterations == most || !size(&r).is_finite() {
                 return Err(self.not_converged(iterations, &r));
             }
             let step = descend(self.jacobian(), &r);
-            // Halve the step until the residual falls; contacts that would part make full steps overshoot.
+            // Halve the step until the residual falls by a share of it: contacts that would part make full steps overshoot, and
+            // a slider's limit is a kink at which full steps jump from side to side.
             let mut factor = 1.0;
             let old = r.norm();
             loop {
                 self.shift_all(&step, -factor);
                 self.residual(&mut trial);
-                if trial.norm() < old {
+                if trial.norm() < (1.0 - SUFFICIENT * factor) * old {
                     break;
                 }
                 if factor < 1e-3 {
@@ -328,6 +395,8 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
                         self.set_speeds();
                         return Ok(());
                     }
+                    // At the kink of a contact about to part no fraction lowers the residual. A thousandth of the step goes
+                    // past it; the count of iterations ends what does not come back, and relaxation takes over.
                     break;
                 }
                 self.shift_all(&step, factor);
@@ -388,9 +457,11 @@ fn descend(jacobian: DMatrix<f64>, r: &DVector<f64>) -> DVector<f64> {
     if let Some(step) = lu.solve(r).filter(|s| s.amax() < 1.0) {
         return step;
     }
-    let svd = jacobian.svd(true, true);
-    let tolerance = svd.singular_values.max() * 1e-13;
-    svd.solve(r, tolerance).unwrap_or_else(|_| DVector::zeros(r.len()))
+    // Of a matrix that is not finite the decomposition would never end. No step then: the caller shortens, relaxes or gives up.
+    let finite = jacobian.iter().all(|v| v.is_finite());
+    let svd = finite.then(|| jacobian.try_svd(true, true, f64::EPSILON, MOST_SWEEPS)).flatten();
+    svd.and_then(|svd| svd.solve(r, svd.singular_values.max() * 1e-13).ok())
+        .unwrap_or_else(|| DVector::zeros(r.len()))
 }
 
 fn describe(model: &Model, equation: usize) -> String {

@@ -4,6 +4,7 @@
 //! [`Scratch`] may be thrown away at any step without changing a result. [`VehicleSystem`] is what an integrator sees.
 
 pub mod compile;
+pub mod coordinate;
 pub mod energy;
 pub mod equilibrium;
 pub mod linearise;
@@ -14,7 +15,7 @@ pub mod scratch;
 pub mod state;
 pub mod stiff;
 
-pub use model::{Contact, Link, Model, Sensor, SpeedHold, Support};
+pub use model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 pub use rhs::{SpeedProgram, VehicleSystem};
 pub use scratch::Scratch;
 pub use state::StateMap;

@@ -1,6 +1,7 @@
 //! The compiled model: immutable, shared between threads.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Law, Mount, Relative, Wrench};
@@ -112,6 +113,19 @@ pub struct Sensor {
     pub p_B: Vec3,
 }
 
+/// Two points that face each other on two bodies.
+#[derive(Debug, Clone)]
+pub struct Gap {
+    /// Name.
+    pub name: String,
+    /// Body indices.
+    pub bodies: [usize; 2],
+    /// A point on each, from the centre of mass, its own axes, m.
+    pub points: [Vec3; 2],
+    /// From the first point to the second in the vehicle as drawn, axes of the first body, unit vector.
+    pub direction: Vec3,
+}
+
 /// Spring and damper along the track between a body and a frame that moves at the speed asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct SpeedHold {
@@ -142,7 +156,7 @@ pub enum Contact {
     /// Profiles, Hertz, creep-force law.
     Profiles {
         /// Geometry of wheel on rail, side coordinates.
-        table: Box<GeometryTable>,
+        table: Arc<GeometryTable>,
         /// Creep-force law.
         law: CreepLaw,
         /// Combined shear modulus, Pa.
@@ -167,6 +181,8 @@ pub struct Model {
     pub links: Vec<Link>,
     /// Named points.
     pub sensors: Vec<Sensor>,
+    /// Distances that are recorded.
+    pub gaps: Vec<Gap>,
     /// Speed hold, if any.
     pub speed_hold: Option<SpeedHold>,
     /// Design track.
@@ -222,6 +238,7 @@ impl Model {
             wheelsets,
             links,
             sensors,
+            gaps: Vec::new(),
             speed_hold,
             layout,
             deviation,

@@ -51,7 +51,7 @@ pub fn solve(
     }
     for (link, _) in links.iter().zip(carries).filter(|(_, c)| !**c) {
         let motion = at_rest(bodies, wheelsets, link);
-        let on_B = link.wrench(&motion, &NOTHING_REMEMBERED);
+        let on_B = link.wrench(&motion, &vec![0.0; link.memory.len()]);
         let pair = Pair::new(&on_B, &motion, &Mat3::identity());
         for (i, own) in [(link.a, pair.on_A), (link.b, pair.on_B)].into_iter().filter(|(i, _)| free(*i)) {
             for d in 0..3 {
@@ -115,9 +115,6 @@ pub fn solve(
     };
     settle(links, carries, key, share)
 }
-
-/// No law remembers more numbers than this.
-const NOTHING_REMEMBERED: [f64; 8] = [0.0; 8];
 
 fn settle(
     links: &mut [Link],

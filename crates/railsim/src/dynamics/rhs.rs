@@ -162,7 +162,10 @@ impl<'m> VehicleSystem<'m> {
         let scratch = &mut self.scratch;
         let q = &x[self.map.q(at)];
         let k = &scratch.kinematics[at];
-        let deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+        let mut deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+        let (widening, slope) = self.model.layout.widening(q[0]);
+        deviation.gauge += widening;
+        deviation.dgauge_ds += slope;
         scratch.deviation[w] = deviation;
         let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
         let axle = Axle {
@@ -457,6 +460,10 @@ impl System for VehicleSystem<'_> {
 
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
         stiff::matrices(self.model, &self.scratch, block, k, c);
+    }
+
+    fn reject(&mut self) {
+        self.scratch.left_rail = None;
     }
 }
 

@@ -58,6 +58,16 @@ impl StateMap {
         start..start + 6
     }
 
+    /// The body or wheelset (with the track mass under it) that number `element` of the state belongs to; none for what
+    /// connections remember.
+    #[must_use]
+    pub fn owner(&self, element: usize) -> Option<usize> {
+        let bodies = self.bodies * BODY;
+        let owner =
+            if element < bodies { element / BODY } else { self.bodies + (element - bodies) / WHEELSET };
+        (owner < self.bodies + self.wheelsets).then_some(owner)
+    }
+
     /// Three coordinates of the track mass under wheelset `w`.
     #[must_use]
     pub fn track_q(&self, w: usize) -> Range<usize> {
@@ -92,5 +102,12 @@ mod tests {
         }
         own(map.memory());
         assert!(owners.iter().all(|n| *n == 1));
+        for i in 0..9 {
+            assert!(map.q(i).chain(map.u(i)).all(|element| map.owner(element) == Some(i)));
+        }
+        for w in 0..6 {
+            assert!(map.track_q(w).chain(map.track_u(w)).all(|element| map.owner(element) == Some(3 + w)));
+        }
+        assert!(map.memory().all(|element| map.owner(element).is_none()));
     }
 }

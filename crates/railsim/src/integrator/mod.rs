@@ -3,6 +3,7 @@
 //! | `kind` | order | right-hand sides per step | stable to (undamped / real) | for |
 //! |---|---|---|---|---|
 //! | `heun` | 2 | 2 | 0 (growth of y^4/8 per step) / h lambda = -2 | the paper's scheme |
+//! | `heun_controlled` | 2 | 2, and 1 or 2 for each sub-step more | as `heun`, of its shortest sub-step | steps beyond `heun`'s limit |
 //! | `rk4` | 4 | 4 | 2.83 / -2.79 | smooth models |
 //! | `ros2` | 2 | 2 and one small LU per stiff block | no limit inside the blocks, as `heun` outside | contact on track masses |
 //!
@@ -10,6 +11,7 @@
 
 mod explicit;
 mod heun;
+mod heun_controlled;
 mod rk4;
 mod ros2;
 
@@ -24,6 +26,8 @@ pub use ros2::GAMMA as ROS2_GAMMA;
 
 /// Largest step that is accepted, s. No scheme here follows a vehicle's modes with more.
 pub const MAX_STEP: f64 = 0.05;
+/// Most halvings of a step that is taken again: a thousandth of a thousandth of it.
+pub const MAX_HALVINGS: u32 = 20;
 
 /// A part of the state whose own stiffness and damping are large: positions and their rates.
 ///
@@ -57,6 +61,9 @@ pub trait System {
         k.fill(0.0);
         c.fill(0.0);
     }
+
+    /// Told after a call of [`Self::rhs`] whose state is thrown away: what was noted about it does not count.
+    fn reject(&mut self) {}
 }
 
 /// Which scheme, with which step (written form: `integrator = { kind = "ros2", step = 0.001 }`).
@@ -67,6 +74,18 @@ pub enum Integrator {
     Heun {
         /// Step, s.
         step: f64,
+    },
+    /// Heun's scheme with step-back control: where the local error is over tolerance the step is taken again in smaller
+    /// ones, down to `step / 2^halvings`.
+    HeunControlled {
+        /// Longest step, s; rows are written at multiples of it.
+        step: f64,
+        /// Largest local error (the difference between the predictor and the corrector) of any number of the state: m, rad,
+        /// m/s, rad/s alike.
+        tolerance: f64,
+        /// How often a step may be halved; 10 if absent. An error over tolerance in the shortest step ends the run.
+        #[serde(default = "ten_halvings")]
+        halvings: u32,
     },
     /// The classical four-stage Runge-Kutta scheme, order 4.
     Rk4 {
@@ -81,26 +100,52 @@ pub enum Integrator {
     },
 }
 
+fn ten_halvings() -> u32 {
+    10
+}
+
 impl Integrator {
     /// One of each kind, for the contract suite and the documentation.
     #[must_use]
     pub fn examples() -> Vec<Self> {
-        vec![Self::Heun { step: 2.5e-4 }, Self::Rk4 { step: 1e-3 }, Self::Ros2 { step: 1e-3 }]
+        vec![
+            Self::Heun { step: 2.5e-4 },
+            Self::HeunControlled { step: 1e-3, tolerance: 1e-3, halvings: 10 },
+            Self::Rk4 { step: 1e-3 },
+            Self::Ros2 { step: 1e-3 },
+        ]
     }
 
     /// The step, s.
     #[must_use]
     pub fn step(&self) -> f64 {
         match *self {
-            Self::Heun { step } | Self::Rk4 { step } | Self::Ros2 { step } => step,
+            Self::Heun { step }
+            | Self::HeunControlled { step, .. }
+            | Self::Rk4 { step }
+            | Self::Ros2 { step } => step,
+        }
+    }
+
+    /// The shortest step that the scheme may take, s: [`Self::step`] but where it is controlled.
+    #[must_use]
+    pub fn shortest_step(&self) -> f64 {
+        match *self {
+            Self::HeunControlled { step, halvings, .. } => {
+                step * 0.5_f64.powi(halvings.min(MAX_HALVINGS) as i32)
+            }
+            _ => self.step(),
         }
     }
 
     /// The same scheme with another step.
     #[must_use]
     pub fn with_step(&self, step: f64) -> Self {
-        match self {
+        match *self {
             Self::Heun { .. } => Self::Heun { step },
+            Self::HeunControlled { tolerance, halvings, .. } => {
+                Self::HeunControlled { step, tolerance, halvings }
+            }
             Self::Rk4 { .. } => Self::Rk4 { step },
             Self::Ros2 { .. } => Self::Ros2 { step },
         }
@@ -111,6 +156,7 @@ impl Integrator {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Heun { .. } => "heun",
+            Self::HeunControlled { .. } => "heun_controlled",
             Self::Rk4 { .. } => "rk4",
             Self::Ros2 { .. } => "ros2",
         }
@@ -120,16 +166,16 @@ impl Integrator {
     #[must_use]
     pub fn order(&self) -> u32 {
         match self {
-            Self::Heun { .. } | Self::Ros2 { .. } => 2,
+            Self::Heun { .. } | Self::HeunControlled { .. } | Self::Ros2 { .. } => 2,
             Self::Rk4 { .. } => 4,
         }
     }
 
-    /// Right-hand sides in one step.
+    /// Right-hand sides in one step; of a controlled one that is taken at once.
     #[must_use]
     pub fn stages(&self) -> u64 {
         match self {
-            Self::Heun { .. } | Self::Ros2 { .. } => 2,
+            Self::Heun { .. } | Self::HeunControlled { .. } | Self::Ros2 { .. } => 2,
             Self::Rk4 { .. } => 4,
         }
     }
@@ -137,16 +183,27 @@ impl Integrator {
     /// What is wrong with the written values; `at` is the path of the integrator's table.
     #[must_use]
     pub fn faults(&self, at: &KeyPath) -> Vec<Fault> {
+        let mut faults = Vec::new();
         let step = self.step();
-        if step.is_finite() && step > 0.0 && step <= MAX_STEP {
-            return Vec::new();
+        if !(step.is_finite() && step > 0.0 && step <= MAX_STEP) {
+            let fault =
+                Fault::new(at.key("step"), format!("{step} s"), format!("above 0, at most {MAX_STEP} s"));
+            faults.push(if (0.1..=50.0).contains(&step) {
+                fault.hint(format!("the step is in seconds: {step} ms is {}", step / 1000.0))
+            } else {
+                fault
+            });
         }
-        let fault = Fault::new(at.key("step"), format!("{step} s"), format!("above 0, at most {MAX_STEP} s"));
-        vec![if (0.1..=50.0).contains(&step) {
-            fault.hint(format!("the step is in seconds: {step} ms is {}", step / 1000.0))
-        } else {
-            fault
-        }]
+        if let Self::HeunControlled { tolerance, halvings, .. } = *self {
+            if !(tolerance.is_finite() && tolerance > 0.0) {
+                faults.push(Fault::new(at.key("tolerance"), tolerance.to_string(), "a number above 0"));
+            }
+            if !(1..=MAX_HALVINGS).contains(&halvings) {
+                let allowed = format!("1 to {MAX_HALVINGS}");
+                faults.push(Fault::new(at.key("halvings"), halvings.to_string(), allowed));
+            }
+        }
+        faults
     }
 }
 
@@ -161,6 +218,11 @@ pub enum StepEnd {
         /// Which block.
         block: usize,
     },
+    /// The shortest step that control may take is over tolerance: the state is where the last good one led.
+    OverTolerance {
+        /// The element of the state with the largest error.
+        element: usize,
+    },
 }
 
 /// Work done so far.
@@ -172,6 +234,8 @@ pub struct Statistics {
     pub rhs_evaluations: u64,
     /// LU decompositions of stiff blocks.
     pub factorisations: u64,
+    /// Steps thrown away by control and taken again.
+    pub rejected: u64,
 }
 
 /// Writes the slope at (t, x) into `k`: the known one, else by a call of the right-hand side.
@@ -202,6 +266,7 @@ pub struct Stepper {
 #[derive(Debug, Clone)]
 enum Scheme {
     Explicit(explicit::Explicit),
+    HeunControlled(heun_controlled::HeunControlled),
     Ros2(ros2::Ros2),
 }
 
@@ -209,8 +274,12 @@ impl Stepper {
     /// Working memory for a state of length `size`; `blocks` are [`System::stiff_blocks`], which only `ros2` uses.
     #[must_use]
     pub fn new(integrator: &Integrator, size: usize, blocks: &[StiffBlock]) -> Self {
-        let scheme = match integrator {
+        let scheme = match *integrator {
             Integrator::Heun { .. } => Scheme::Explicit(explicit::Explicit::new(&heun::TABLEAU, size)),
+            Integrator::HeunControlled { tolerance, halvings, .. } => {
+                let halvings = halvings.min(MAX_HALVINGS);
+                Scheme::HeunControlled(heun_controlled::HeunControlled::new(tolerance, halvings, size))
+            }
             Integrator::Rk4 { .. } => Scheme::Explicit(explicit::Explicit::new(&rk4::TABLEAU, size)),
             Integrator::Ros2 { .. } => Scheme::Ros2(ros2::Ros2::new(size, blocks)),
         };
@@ -234,6 +303,7 @@ impl Stepper {
     ) -> StepEnd {
         match &mut self.scheme {
             Scheme::Explicit(scheme) => scheme.step(system, t, x, h, slope, &mut self.statistics),
+            Scheme::HeunControlled(scheme) => scheme.step(system, t, x, h, slope, &mut self.statistics),
             Scheme::Ros2(scheme) => scheme.step(system, t, x, h, slope, &mut self.statistics),
         }
     }
@@ -262,6 +332,19 @@ mod tests {
             read(r#"{"kind":"ros2","step":0.001,"gamma":1.0}"#).unwrap_err().to_string().contains("gamma")
         );
         assert!(read(r#"{"kind":"euler","step":0.001}"#).unwrap_err().to_string().contains("heun"));
+    }
+
+    #[test]
+    fn a_tolerance_and_halvings_outside_their_range_are_refused_by_key() {
+        let at = KeyPath::of("run.integrator");
+        let faults = |tolerance, halvings| -> Vec<String> {
+            let scheme = Integrator::HeunControlled { step: 1e-3, tolerance, halvings };
+            scheme.faults(&at).iter().map(ToString::to_string).collect()
+        };
+        assert_eq!(faults(0.0, 4), ["run.integrator.tolerance: found 0; allowed: a number above 0"]);
+        assert_eq!(faults(f64::NAN, 4).len(), 1);
+        assert_eq!(faults(1e-3, 21), ["run.integrator.halvings: found 21; allowed: 1 to 20"]);
+        assert_eq!(faults(-1.0, 0).len(), 2);
     }
 
     #[test]

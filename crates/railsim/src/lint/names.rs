@@ -37,6 +37,15 @@ fn flatten<'a>(value: &'a Json, name: &str, key: &KeyPath, out: &mut BTreeMap<St
     }
 }
 
+/// The name that a text refers to: `$name` or `-$name`, before which a placeholder (`{sign}$name`) may stand for the sign.
+fn reference(text: &str) -> Option<&str> {
+    let signed = match text.split_once('}') {
+        Some((word, rest)) if word.starts_with('{') => rest,
+        _ => text,
+    };
+    signed.strip_prefix('-').unwrap_or(signed).strip_prefix('$')
+}
+
 /// Whether a reference, in which `{word}` may stand for anything, means a name.
 fn means(reference: &str, name: &str) -> bool {
     match (reference.find('{'), reference.rfind('}')) {
@@ -51,11 +60,7 @@ fn means(reference: &str, name: &str) -> bool {
 fn parameters(written: &Json, report: &mut Report) {
     let Some(table) = written.get("parameters") else { return };
     let mut references = Vec::new();
-    texts(written, &mut |text| {
-        if let Some(name) = text.strip_prefix('-').unwrap_or(text).strip_prefix('$') {
-            references.push(name);
-        }
-    });
+    texts(written, &mut |text| references.extend(reference(text)));
     let mut named = BTreeMap::new();
     flatten(table, "", &KeyPath::of("vehicle.parameters"), &mut named);
     for (name, (key, value)) in named {
@@ -103,6 +108,25 @@ fn conditions(written: &Json, report: &mut Report) {
                 let subject = format!("{name} in {condition}");
                 report.add("LM103", subject, key, value.to_string(), "another value than [parameters] has");
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reference;
+
+    #[test]
+    fn a_sign_may_be_a_word_of_the_template() {
+        for (text, name) in [
+            ("$rod.x", Some("rod.x")),
+            ("-$rod.x", Some("rod.x")),
+            ("{sign}$rod.x", Some("rod.x")),
+            ("{sign}-$rod.x", Some("rod.x")),
+            ("{axle}", None),
+            ("primary_{axle}", None),
+        ] {
+            assert_eq!(reference(text), name, "{text}");
         }
     }
 }

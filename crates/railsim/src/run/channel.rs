@@ -17,7 +17,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 61] = [
+const PARTS: [(&str, &str, &str); 57] = [
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force on the flange, all contacts there"),
     ("N_second_flange", "N", "normal force of the contact nearer to the flange tip, of two on the flange"),
@@ -30,6 +30,7 @@ const PARTS: [(&str, &str, &str); 61] = [
     ("az", "m/s2", "acceleration along the body's z axis (down), without gravity"),
     ("branch", "1", "number of the root locus that a mode belongs to"),
     ("cant", "rad", "cant under the vehicle's centre, + right rail lower"),
+    ("clearance", "m", "what is left between the two points of a gap, negative where they have met"),
     ("contact_y", "m", "lateral place of the main contact on the wheel profile, + to the field side"),
     ("creep_x", "1", "longitudinal creepage of the main contact"),
     ("creep_y", "1", "lateral creepage of the main contact, + outward"),
@@ -39,6 +40,7 @@ const PARTS: [(&str, &str, &str); 61] = [
     ("curvature", "1/m", "curvature under the vehicle's centre, + to the right"),
     ("damping_ratio", "1", "share of critical damping, negative where the motion grows"),
     ("direction", "1", "-1 while the speed is stepped down, +1 up"),
+    ("flange_angle", "rad", "steepest angle of the wheel profile's flange face against the axle"),
     ("force_x", "N", "load on the body, + forward"),
     ("force_y", "N", "load on the body, + right"),
     ("force_z", "N", "load on the body, + down"),
@@ -49,9 +51,6 @@ const PARTS: [(&str, &str, &str); 61] = [
     ("lateral", "m", "irregularity: lateral deviation of the centre line, + right"),
     ("mode", "1", "number of the mode at its speed, by frequency"),
     ("natural_frequency", "Hz", "size of the eigenvalue over 2 pi"),
-    ("omega_x", "rad/s", "roll rate"),
-    ("omega_y", "rad/s", "pitch rate; of a wheelset its spin, negative rolling forward"),
-    ("omega_z", "rad/s", "yaw rate"),
     ("phi", "rad", "roll against the track frame"),
     ("psi", "rad", "yaw against the track frame, + nose right"),
     ("reaction", "N", "force that holds the displaced coordinate where it is"),
@@ -77,9 +76,6 @@ const PARTS: [(&str, &str, &str); 61] = [
     ),
     ("v", "m/s", "speed of the vehicle along the track"),
     ("vertical", "m", "irregularity: vertical deviation of the centre line, + down"),
-    ("vx", "m/s", "speed of the centre of mass along the track axis"),
-    ("vy", "m/s", "lateral speed, + right"),
-    ("vz", "m/s", "vertical speed, + down"),
     ("x", "m", "place along the track relative to the vehicle's place"),
     ("y", "m", "lateral displacement from the track centre line, + right"),
     ("z", "m", "height: depth below the top of rail, negative above"),
@@ -104,6 +100,7 @@ pub(crate) enum Source {
     Irregularity(usize),
     SensorPlace(usize, usize),
     SensorAcceleration(usize, usize),
+    Gap(usize),
     Wheel(usize, usize, WheelQuantity),
     SumLV(usize),
     SumY(usize),
@@ -159,6 +156,9 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
             plan.push((format!("{}.{part}", sensor.name), Source::SensorAcceleration(i, axis)));
         }
     }
+    for (i, gap) in model.gaps.iter().enumerate() {
+        plan.push((format!("{}.clearance", gap.name), Source::Gap(i)));
+    }
     if !model.wheelsets.is_empty() {
         for (i, part) in ["lateral", "vertical", "cross_level", "gauge"].into_iter().enumerate() {
             plan.push((format!("track.{part}"), Source::Irregularity(i)));
@@ -208,6 +208,7 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
 /// Whatever compiling the case finds.
 pub fn channels(case: &Case) -> Result<Vec<Channel>> {
     let model = crate::dynamics::compile::model(case)?;
+    crate::dynamics::coordinate::disturbance(&model, &case.run.disturbance)?;
     Ok(plan(&model)
         .into_iter()
         .map(|(name, _)| {

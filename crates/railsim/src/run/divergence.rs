@@ -3,6 +3,7 @@
 use crate::body::coordinate;
 use crate::dynamics::VehicleSystem;
 use crate::error::Error;
+use crate::integrator::StepEnd;
 
 /// Farther than this from the design position (m) a body is not on this track any more.
 pub const FARTHEST: f64 = 1.0;
@@ -12,6 +13,30 @@ pub const FARTHEST_TRACK: f64 = 0.1;
 pub const STEEPEST: f64 = 0.6;
 /// A wheel force beyond this many static ones is a blow-up of the integration, not physics.
 pub const LARGEST_LOAD: f64 = 100.0;
+
+/// Whether a step came to its end, at time `t` and state `x`.
+///
+/// # Errors
+/// [`Error::Diverged`] with the wheelset whose implicit step has no solution, or the body whose motion control could not
+/// follow.
+pub fn stepped(system: &VehicleSystem<'_>, end: StepEnd, t: f64, x: &[f64]) -> Result<(), Error> {
+    let model = system.model;
+    let map = model.map();
+    let (body, cause) = match end {
+        StepEnd::Done => return Ok(()),
+        StepEnd::Singular { block } => (
+            model.wheelsets[block].body.name.clone(),
+            "the implicit step has no solution: a number that is not finite in wheel and track".to_owned(),
+        ),
+        StepEnd::OverTolerance { element } => (
+            map.owner(element).map_or_else(|| "a connection".to_owned(), |i| model.rigid(i).name.clone()),
+            "the local error of the shortest step that step control may take is over tolerance: \
+             allow more (run.integrator.tolerance) or more halvings (run.integrator.halvings)"
+                .to_owned(),
+        ),
+    };
+    Err(Error::Diverged { t, s: x[map.q(model.reference()).start], body, cause })
+}
 
 /// Checks the state after a step.
 ///

@@ -75,6 +75,12 @@ fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &
             let a = k.R_TB.tr_mul(&a_T) + turn.cross(&sensor.p_B) + w.cross(&w.cross(&sensor.p_B));
             a[axis]
         }
+        Source::Gap(i) => {
+            let gap = &model.gaps[i];
+            let [a, b] = gap.bodies.map(|body| &scratch.kinematics[body].pose);
+            let between = a.R.tr_mul(&(b.r + b.R * gap.points[1] - a.r)) - gap.points[0];
+            between.dot(&gap.direction)
+        }
         Source::Wheel(w, side, quantity) => wheel_value(&scratch.wheels[w][side], quantity),
         Source::SumLV(w) => {
             let [left, right] = &scratch.wheels[w];

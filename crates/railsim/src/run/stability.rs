@@ -41,7 +41,9 @@ pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator)
     system.rhs(0.0, x, &mut dx);
     let a = stiff_part(system);
     system.irregular = irregular;
-    let h = integrator.step();
+    // Control may go on down to its shortest step, so that is the one that has to be stable.
+    let h = integrator.shortest_step();
+    let per_shortest = integrator.step() / h;
     follow_memory(system.model, integrator)?;
     // What the vehicle itself does in one step is exp(h J): its spectral radius is exp(h times the largest real part).
     let (Some(largest_eigenvalue), Some(own)) = (spectral_radius(j.clone()), spectral_radius((&j * h).exp()))
@@ -72,11 +74,12 @@ pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator)
                 Fault::new(
                     KeyPath::of("run.integrator.step"),
                     format!(
-                        "{h} s with `{}`, in which an error grows {growth} each step (fastest eigenvalue {largest_eigenvalue:.0} rad/s)",
+                        "{} s with `{}`, in which an error grows {growth} each step (fastest eigenvalue {largest_eigenvalue:.0} rad/s)",
+                        integrator.step(),
                         integrator.name()
                     ),
                     if low > 0.0 {
-                        format!("at most about {low:.2e} s with this scheme")
+                        format!("at most about {:.2e} s with this scheme", low * per_shortest)
                     } else {
                         "another scheme: this one is stable with no step here".to_owned()
                     },
@@ -92,12 +95,13 @@ pub fn check(system: &mut VehicleSystem<'_>, x: &[f64], integrator: &Integrator)
 fn follow_memory(model: &Model, integrator: &Integrator) -> Result<()> {
     // Where the scheme's stability function leaves the unit circle on the negative real axis.
     let reach = match integrator {
-        Integrator::Heun { .. } | Integrator::Ros2 { .. } => 2.0,
+        Integrator::Heun { .. } | Integrator::HeunControlled { .. } | Integrator::Ros2 { .. } => 2.0,
         Integrator::Rk4 { .. } => 2.785,
     };
     let speed = |link: &Link| link.law.memory_speed();
     let Some(link) = model.links.iter().max_by(|a, b| speed(a).total_cmp(&speed(b))) else { return Ok(()) };
-    if integrator.step() * speed(link) <= reach {
+    let h = integrator.shortest_step();
+    if h * speed(link) <= reach {
         return Ok(());
     }
     Err(Error::input(Fault::new(
@@ -109,7 +113,7 @@ fn follow_memory(model: &Model, integrator: &Integrator) -> Result<()> {
             link.law.kind(),
             speed(link)
         ),
-        format!("at most {:.2e} s with this scheme", reach / speed(link)),
+        format!("at most {:.2e} s with this scheme", reach / speed(link) * integrator.step() / h),
     )))
 }
 
@@ -138,7 +142,7 @@ fn radius(j: &DMatrix<f64>, a: &DMatrix<f64>, integrator: &Integrator, h: f64) -
     let one = DMatrix::<f64>::identity(n, n);
     let hj = j * h;
     let step = match integrator {
-        Integrator::Heun { .. } => &one + &hj + &hj * &hj * 0.5,
+        Integrator::Heun { .. } | Integrator::HeunControlled { .. } => &one + &hj + &hj * &hj * 0.5,
         Integrator::Rk4 { .. } => &one + &hj * (&one + &hj * (&one * 0.5 + &hj * (&one / 6.0 + &hj / 24.0))),
         Integrator::Ros2 { .. } => {
             let w = (&one - a * (ROS2_GAMMA * h)).lu().try_inverse()?;

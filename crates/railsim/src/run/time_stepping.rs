@@ -1,8 +1,8 @@
 //! A case in time: rolling equilibrium, fixed steps to the end of the track, one row per output step.
 
-use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, equilibrium};
+use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, coordinate, equilibrium};
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{StepEnd, Stepper, System};
+use crate::integrator::{Stepper, System};
 use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
@@ -57,8 +57,9 @@ pub struct Outcome {
 
 /// Runs a case of kind `time`.
 ///
-/// The first wheelset starts at the beginning of the track, the vehicle behind it on a straight continuation, in rolling
-/// equilibrium on the design track at the speed asked for; the run ends when that wheelset reaches the end of the track.
+/// The first wheelset starts at `run.start`, by default the beginning of the track with the vehicle behind it on a straight
+/// continuation, in rolling equilibrium on the design track at the speed asked for but for `run.disturbance`; the run ends when that wheelset reaches the
+/// end of the track.
 ///
 /// # Errors
 /// Bad input, no equilibrium, a step beyond the scheme's stability limit, an interruption. A run that diverges on the way
@@ -70,10 +71,11 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let every = (case.run.output_step / h).round().max(1.0) as usize;
     let map = model.map();
     let speed = case.run.speed;
+    let disturbance = coordinate::disturbance(&model, &case.run.disturbance)?;
 
     let places: Vec<f64> = (0..model.count()).map(|i| model.rigid(i).position.x).collect();
     let wheels = if model.wheelsets.is_empty() { &places[..] } else { &places[model.bodies.len()..] };
-    let start = -wheels.iter().fold(f64::MIN, |front, x| front.max(*x));
+    let start = case.run.start - wheels.iter().fold(f64::MIN, |front, x| front.max(*x));
     smooth_start(&model, start)?;
 
     let mut x = equilibrium::solve(&model, start, speed)?;
@@ -83,11 +85,14 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     system.rhs(0.0, &x, &mut dx);
     let limit = stability::check(&mut system, &x, integrator)?;
     control.progress(0.0, start, 0.0);
+    for (q, by) in disturbance {
+        x[q] += by;
+    }
     system.rhs(0.0, &x, &mut dx);
     // What the perturbed states of that check set.
     system.scratch.left_rail = None;
 
-    let distance = case.track.length;
+    let distance = case.track.length - case.run.start;
     let rows = ((distance / speed / (h * every as f64)) as usize).min(MOST_ROWS_AT_ONCE) + 8;
     let mut recorder = Recorder::new(&model, rows);
     recorder.record(&system, 0.0, &x, &dx);
@@ -103,17 +108,9 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             let known = (n == 0).then_some(&dx[..]);
             let end = stepper.step_from(&mut system, step as f64 * h, &mut x, h, known);
             step += 1;
-            if let StepEnd::Singular { block } = end {
-                break 'run Ended::Diverged(Error::Diverged {
-                    t: step as f64 * h,
-                    s: x[reference],
-                    body: model.wheelsets[block].body.name.clone(),
-                    cause:
-                        "the implicit step has no solution: a number that is not finite in wheel and track"
-                            .into(),
-                });
-            }
-            if let Err(error) = divergence::check(&mut system, step as f64 * h, &x) {
+            let t = step as f64 * h;
+            let good = divergence::stepped(&system, end, t, &x);
+            if let Err(error) = good.and_then(|()| divergence::check(&mut system, t, &x)) {
                 break 'run Ended::Diverged(error);
             }
         }
@@ -150,6 +147,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
         "steps": step,
         "right_hand_sides": counts.rhs_evaluations,
         "factorisations": counts.factorisations,
+        "rejected": counts.rejected,
         "largest_eigenvalue": limit.largest_eigenvalue,
         "simulated_s": step as f64 * h,
         "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,
@@ -163,14 +161,20 @@ const SMOOTH: f64 = 1e-5;
 /// The start is in equilibrium on the design track, so the irregularity must not have begun there: a step of a millimetre
 /// under a wheel is a hammer blow.
 fn smooth_start(model: &Model, start: f64) -> Result<()> {
-    // Just inside the first segment: a clothoid begins straight, a curve does not.
-    let (curvature, cant) = (model.layout.curvature(1e-6), model.layout.cant(1e-6));
-    if curvature.abs() > 1e-6 || cant.abs() > 1e-6 {
-        return Err(Error::input(Fault::new(
-            KeyPath::of("track.layout"),
-            format!("a first segment of curvature {curvature:.2e} 1/m, cant {cant:.2e} rad"),
-            "a tangent or clothoid first: a run starts on straight track",
-        )));
+    for set in &model.wheelsets {
+        // Just ahead of the wheelset: a clothoid begins straight, a curve does not.
+        let s = start + set.body.position.x + 1e-6;
+        let (curvature, cant) = (model.layout.curvature(s), model.layout.cant(s));
+        if curvature.abs() > 1e-6 || cant.abs() > 1e-6 {
+            return Err(Error::input(Fault::new(
+                KeyPath::of("track.layout"),
+                format!(
+                    "curvature {curvature:.2e} 1/m, cant {cant:.2e} rad under {} at the start",
+                    set.body.name
+                ),
+                "straight track without cant under the whole vehicle, then a clothoid: a run starts on straight track",
+            )));
+        }
     }
     for set in &model.wheelsets {
         let d = model.deviation.at(start + set.body.position.x);
@@ -186,7 +190,9 @@ fn smooth_start(model: &Model, start: f64) -> Result<()> {
                     ),
                     "a length > 0 m over which the irregularity grows from nothing",
                 )
-                .hint("`fade_in = 50.0` fades it in over the first 50 m"),
+                .hint(
+                    "`fade_in = 50.0` fades it in over the 50 m from `fade_start` on, which is 0 by default",
+                ),
             ));
         }
     }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::check::unknown;
 use super::node::{Node, quoted};
-use super::vehicle::{Body, Connection, Sensor, Shape, Vehicle, Wheelset};
-use super::written::{WrittenConnection, WrittenVehicle};
+use super::vehicle::{Body, Connection, Gap, Sensor, Shape, Vehicle, Wheelset};
+use super::written::{WrittenConnection, WrittenGap, WrittenVehicle};
 use crate::connection::ForceLaw;
 use crate::error::{Fault, KeyPath, Segment};
 
@@ -75,6 +75,9 @@ impl<'a> Builder<'a> {
             })
             .collect();
 
+        let gaps: Vec<Gap> =
+            written.gap.into_iter().zip(self.nodes("gap")).flat_map(|(g, node)| self.gap(g, node)).collect();
+
         let named: Vec<(&str, &KeyPath)> = bodies
             .iter()
             .map(|b| (b.name.as_str(), &b.key))
@@ -84,15 +87,18 @@ impl<'a> Builder<'a> {
             self.name(name, key);
         }
         let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
-        self.unique(named.iter().copied().chain(connections.iter().map(|c| (c.name.as_str(), &c.key))));
+        let others = connections.iter().map(|c| (c.name.as_str(), &c.key));
+        let others = others.chain(gaps.iter().map(|g| (g.name.as_str(), &g.key)));
+        self.unique(named.iter().copied().chain(others));
         self.unique(sensors.iter().map(|s| (s.name.as_str(), &s.key)));
-        for c in &connections {
-            for (i, body) in c.between.iter().enumerate() {
-                self.body(body, c.key.key("between").index(i), &names);
+        let pairs = connections.iter().map(|c| (&c.between, &c.key));
+        for (between, key) in pairs.chain(gaps.iter().map(|g| (&g.between, &g.key))) {
+            for (i, body) in between.iter().enumerate() {
+                self.body(body, key.key("between").index(i), &names);
             }
-            if c.between[0] == c.between[1] {
-                let found = format!("{0} and {0}", c.between[0]);
-                self.fault(Fault::new(c.key.key("between"), found, "two different bodies"));
+            if between[0] == between[1] {
+                let found = format!("{0} and {0}", between[0]);
+                self.fault(Fault::new(key.key("between"), found, "two different bodies"));
             }
         }
         for s in &sensors {
@@ -133,6 +139,7 @@ impl<'a> Builder<'a> {
             wheelsets,
             connections,
             sensors,
+            gaps,
             speed_hold: written.speed_hold,
             contact: written.contact,
             outline: written.outline,
@@ -209,6 +216,33 @@ impl<'a> Builder<'a> {
             ..right.clone()
         };
         vec![right, left]
+    }
+
+    /// One gap, or the two of a mirrored one.
+    fn gap(&mut self, g: WrittenGap, node: &Node) -> Vec<Gap> {
+        self.name(&g.name, &node.at);
+        let [from, to] = g.positions;
+        if from == to {
+            let allowed = "two points apart: their distance is the clearance";
+            self.fault(Fault::new(node.at.key("positions"), "the same point twice", allowed));
+            return Vec::new();
+        }
+        let one = |suffix: &str, points| Gap {
+            name: format!("{}{suffix}", g.name),
+            between: g.between.clone(),
+            points,
+            key: node.at.clone(),
+        };
+        if !g.mirror {
+            return vec![one("", g.positions)];
+        }
+        if from[1] <= 0.0 {
+            let allowed = "y > 0 m: the right one, from which the left one is made";
+            let found = format!("mirror = true with y = {}", from[1]);
+            self.fault(Fault::new(node.at.key("positions"), found, allowed));
+            return Vec::new();
+        }
+        vec![one("_right", g.positions), one("_left", g.positions.map(|[x, y, z]| [x, -y, z]))]
     }
 
     /// Names become parts of channel names, so they are words without dots.

@@ -16,6 +16,7 @@ use super::track::Track;
 use super::vehicle::Vehicle;
 use crate::contact::creep::CreepLaw;
 use crate::contact::friction::Friction;
+use crate::contact::geometry_table::Tables;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::Integrator;
 use crate::track::irregularity::{DeviationField, Irregularity};
@@ -44,6 +45,8 @@ pub struct Case {
     pub profiles: BTreeMap<String, ProfileData>,
     /// The vehicle as written, overrides in it: what names and references are looked for in.
     pub written: Json,
+    /// Contact tables that the case shares with others; one of its own to begin with.
+    pub tables: Tables,
 }
 
 /// Which of the two a profile is.
@@ -156,6 +159,7 @@ fn read(json: &Json, faults: &mut Vec<Fault>) -> Option<Case> {
             .map(|(name, p)| (name, ProfileData { kind: p.kind, points: millimetres(p.points) }))
             .collect(),
         written: document.cloned().unwrap_or_default(),
+        tables: Tables::default(),
     })
 }
 
@@ -191,6 +195,13 @@ fn relations(root: &Node, own_profile: Option<&str>, faults: &mut Vec<Fault>) {
     }
     if let Some(run) = root.get("run") {
         run_check::relations(run, faults);
+    }
+    if let Some(start) = at("run", "start")
+        && let (Some(from), Some(to)) = (start.number(), at("track", "length").and_then(Node::number))
+        && from >= to
+    {
+        let allowed = format!("from 0 to less than track.length = {to} m");
+        faults.push(Fault::new(start.at.clone(), start.found(), allowed));
     }
     if let Some(node) = at("track", "irregularity")
         && let Some(kind) = at("run", "kind").and_then(Node::text)

@@ -10,7 +10,9 @@ use super::node::{Node, Value, quoted};
 use super::parameter::{self, Named};
 use super::template::{self, Elements, KINDS};
 use super::vehicle::Vehicle;
-use super::written::{WrittenBody, WrittenConnection, WrittenSensor, WrittenVehicle, WrittenWheelset};
+use super::written::{
+    WrittenBody, WrittenConnection, WrittenGap, WrittenSensor, WrittenVehicle, WrittenWheelset,
+};
 use crate::error::{Error, Fault, KeyPath, Result, Segment};
 
 /// The value, or all faults, each once.
@@ -152,6 +154,7 @@ fn check_spare(spare: &Elements, faults: &mut Vec<Fault>) {
             match *kind {
                 "body" => check::structure::<WrittenBody>(item, faults),
                 "connection" => check::structure::<WrittenConnection>(item, faults),
+                "gap" => check::structure::<WrittenGap>(item, faults),
                 "sensor" => check::structure::<WrittenSensor>(item, faults),
                 _ => check::structure::<WrittenWheelset>(item, faults),
             }

@@ -24,6 +24,6 @@ pub use run::{Run, RunKind};
 pub use toml_source::{SyntaxError, line_of, syntax_error, toml_to_json};
 pub use track::{Support, Track};
 pub use vehicle::{
-    Axis, Body, Connection, ContactSettings, DynamicBrake, Equipment, Load, Outline, Sensor, Shape,
+    Axis, Body, Connection, ContactSettings, DynamicBrake, Equipment, Gap, Load, Outline, Sensor, Shape,
     SpeedHold, Traction, Vehicle, Wheelset,
 };

@@ -10,7 +10,7 @@ use super::node::{Node, Value};
 use crate::error::{Fault, KeyPath};
 
 /// Groups that would be mistaken for keys of a spec on the command line (`--set run.speed_kmh=80`).
-pub(super) const REFUSED_GROUPS: [&str; 4] = ["condition", "run", "track", "vehicle"];
+pub(super) const REFUSED_GROUPS: [&str; 5] = ["condition", "run", "test", "track", "vehicle"];
 
 /// A table of numbers by dotted name, e.g. `secondary.kz`; each a number or a reference.
 pub(super) type Named = BTreeMap<String, Node>;

@@ -70,10 +70,18 @@ pub struct Run {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "s"))]
     pub output_step: f64,
+    /// Coordinates (as in `hold`) that are not at their balance when time begins, and by how much, m or rad: `time`, `ramp_down` and
+    /// `bifurcation`, the last with a hundredth of it at each step on the way up.
+    #[serde(default)]
+    pub disturbance: BTreeMap<String, f64>,
     /// Acceleration of gravity, m/s2; 9.80665, the standard value, if absent.
     #[serde(default = "standard_gravity")]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s2"))]
     pub gravity: f64,
+    /// `time`: where the first wheelset is at the start, m; 0, the beginning of the track, if absent.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "unit" = "m"))]
+    pub start: f64,
     /// Where the vehicle's centre stands on the layout, m; the middle of the track if absent. Not for `time`.
     #[serde(default)]
     #[schemars(extend("unit" = "m"))]
@@ -195,8 +203,6 @@ pub enum Search {
         /// Deceleration, m/s2.
         #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s2"))]
         deceleration: f64,
-        /// What the balance is disturbed by at the start: coordinates as in `hold`, m or rad.
-        disturbance: BTreeMap<String, f64>,
         /// When hunting counts as going on.
         #[serde(default)]
         hunting: Hunting,
@@ -209,8 +215,6 @@ pub enum Search {
         /// Step of the speed, m/s.
         #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s"))]
         speed_step: f64,
-        /// What the balance is disturbed by at the start, and at each step on the way up by a hundredth of it.
-        disturbance: BTreeMap<String, f64>,
         /// Rate at which the speed changes between the steps, m/s2.
         #[serde(default = "change_of_speed")]
         #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s2"))]

@@ -6,7 +6,9 @@ use super::run::{Load, Run, RunKind, Search};
 use crate::error::Fault;
 
 /// Keys that only some kinds of run have a use for, with those kinds.
-const OWNED: [(&str, &[RunKind]); 6] = [
+const OWNED: [(&str, &[RunKind]); 8] = [
+    ("disturbance", &[RunKind::Time, RunKind::CriticalSpeed]),
+    ("start", &[RunKind::Time]),
     ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("hold", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
     ("speeds", &[RunKind::Modal]),
@@ -37,7 +39,12 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
         _ => false,
     };
     if stepped {
-        needs(node, "integrator", "a table with kind = \"heun\", \"rk4\", \"ros2\"", faults);
+        needs(
+            node,
+            "integrator",
+            "a table with kind = \"heun\", \"heun_controlled\", \"rk4\", \"ros2\"",
+            faults,
+        );
         needs(node, "output_step", "a number > 0 s", faults);
         if run.speed <= 0.0 {
             at(node, "speed", "a number > 0 m/s", faults);
@@ -98,14 +105,14 @@ fn searching(node: &Node, run: &Run, search: &Search, faults: &mut Vec<Fault>) {
     let Some(table) = node.get("search") else { return };
     match search {
         Search::Linear { range, spacing } => {
+            at(node, "disturbance", "nothing where no time is stepped", faults);
             if range[0] >= range[1] {
                 at(table, "range", "the lower speed first, m/s", faults);
             } else if spacing.is_some_and(|d| range[1] - range[0] > MOST_SPEEDS * d) {
                 at(table, "spacing", &format!("at most {MOST_SPEEDS} speeds in the range"), faults);
             }
         }
-        Search::RampDown { end_speed, disturbance, .. }
-        | Search::Bifurcation { end_speed, disturbance, .. } => {
+        Search::RampDown { end_speed, .. } | Search::Bifurcation { end_speed, .. } => {
             if *end_speed >= run.speed {
                 at(table, "end_speed", &format!("below run.speed = {} m/s", run.speed), faults);
             }
@@ -114,10 +121,11 @@ fn searching(node: &Node, run: &Run, search: &Search, faults: &mut Vec<Fault>) {
             {
                 at(table, "speed_step", &format!("at most {MOST_SPEEDS} speeds"), faults);
             }
-            if disturbance.values().all(|v| *v == 0.0) {
+            if run.disturbance.values().all(|v| *v == 0.0) {
                 let allowed =
                     "a coordinate and by how much, e.g. { \"carbody.y\" = 0.01 }: without it nothing moves";
-                at(table, "disturbance", allowed, faults);
+                needs(node, "disturbance", allowed, faults);
+                at(node, "disturbance", allowed, faults);
             }
         }
     }

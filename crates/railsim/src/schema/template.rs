@@ -15,7 +15,7 @@ use super::parameter::{self, Named};
 use crate::error::Fault;
 
 /// The lists that a vehicle and a template hold, and which of their keys are positions.
-pub(super) const KINDS: [&str; 4] = ["body", "connection", "sensor", "wheelset"];
+pub(super) const KINDS: [&str; 5] = ["body", "connection", "gap", "sensor", "wheelset"];
 const POSITIONS: [&str; 2] = ["position", "positions"];
 
 /// No real vehicle comes near it; templates that use templates grow as a power.

@@ -14,8 +14,9 @@ pub struct Track {
     pub name: Option<String>,
     /// One line for people.
     pub title: Option<String>,
-    /// Length, m: a run goes from the first wheelset at 0 to the first wheelset here.
-    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+    /// Length, m: a run goes from the first wheelset at 0 to the first wheelset here. More than 1000 km is a slip of the
+    /// pen, and irregularities are looked at metre by metre before a run.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6, "unit" = "m"))]
     pub length: f64,
     /// Gauge, m.
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]

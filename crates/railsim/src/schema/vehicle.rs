@@ -36,6 +36,8 @@ pub struct Vehicle {
     pub connections: Vec<Connection>,
     /// Named points.
     pub sensors: Vec<Sensor>,
+    /// Distances between bodies that are recorded.
+    pub gaps: Vec<Gap>,
     /// What holds the speed, if anything.
     pub speed_hold: Option<SpeedHold>,
     /// Wheel and rail material.
@@ -120,6 +122,19 @@ pub struct Sensor {
     pub body: String,
     /// Nominal point, m.
     pub position: [f64; 3],
+    /// Where it was written.
+    pub key: KeyPath,
+}
+
+/// Two points that face each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gap {
+    /// Name.
+    pub name: String,
+    /// The two bodies.
+    pub between: [String; 2],
+    /// A nominal point on each, m.
+    pub points: [[f64; 3]; 2],
     /// Where it was written.
     pub key: KeyPath,
 }

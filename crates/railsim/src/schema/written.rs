@@ -59,6 +59,9 @@ pub(super) struct WrittenVehicle {
     /// Named points whose motion is recorded.
     #[serde(default)]
     pub sensor: Vec<WrittenSensor>,
+    /// Distances between bodies that must not close.
+    #[serde(default)]
+    pub gap: Vec<WrittenGap>,
     /// Wheel and rail material.
     pub contact: ContactSettings,
     /// Spring-damper that holds the speed.
@@ -107,6 +110,9 @@ pub(super) struct WrittenTemplate {
     /// Named points.
     #[serde(default, rename = "sensor")]
     pub _sensor: Vec<WrittenSensor>,
+    /// Distances between bodies.
+    #[serde(default, rename = "gap")]
+    pub _gap: Vec<WrittenGap>,
     /// Copies of other templates.
     #[serde(default, rename = "use")]
     pub _uses: Vec<super::template::Use>,
@@ -179,6 +185,23 @@ pub(super) struct WrittenConnection {
     /// The law.
     #[serde(flatten)]
     pub law: Law,
+}
+
+/// Two points that face each other on two bodies; what is left between them is recorded. No force acts: a stop that
+/// is to carry is a connection.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WrittenGap {
+    /// Name; the channel is `<name>.clearance`.
+    pub name: String,
+    /// The two bodies.
+    pub between: [String; 2],
+    /// A point on each, in vehicle axes, m. Their distance is the clearance of the vehicle as drawn, the line that joins
+    /// them the direction, which moves with the first body, in which it is measured.
+    pub positions: [[f64; 3]; 2],
+    /// Makes two of it: `<name>_right` as written (y > 0) and `<name>_left` at -y.
+    #[serde(default)]
+    pub mirror: bool,
 }
 
 /// A named point on a body.

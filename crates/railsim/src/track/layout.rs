@@ -1,15 +1,16 @@
 //! The design line: segments as written, compiled to frames in closed form.
 //!
-//! Along each segment curvature (the turning of the heading per metre of arc length), cant (mm, linear) and gradient
-//! angle are constant or pass from one value to the next by one [`Transition`]; a vertical curve is a linear passage
-//! of the gradient angle, that is a circular arc in elevation. Heading, gradient and cant are closed forms of s; the
+//! Along each segment curvature (the turning of the heading per metre of arc length), cant (mm), gradient angle and the
+//! widening of the gauge are constant or pass from one value to the next by one [`Transition`]; a vertical curve is a passage
+//! of the gradient angle, if linear a circular arc in elevation. Heading, gradient and cant are closed forms of s; the
 //! position is the integral of the direction, a closed form on straight and uniformly curved track, elsewhere summed
 //! once at nodes and continued from the nearest one by a four-point Gauss rule over less than a tenth of a radian
 //! (error below 1e-17 of the length).
 
 use super::cant;
 use super::frame::{Attitude, Frame};
-use super::segment::{Ends, Segment, faults};
+use super::gauge::Gauge;
+use super::segment::{Ends, Segment, ends, faults};
 use super::transition::Transition;
 use crate::error::{Error, KeyPath, Result};
 use crate::math::Vec3;
@@ -18,6 +19,10 @@ use crate::math::quadrature::GAUSS_4;
 
 /// Nodes stand so close that the line turns by no more than this between two of them, rad.
 const TURN_PER_CELL: f64 = 0.1;
+
+/// Least number of cells of a shape that is no straight line, so that the rule follows the shape; made even, so that one ends
+/// where Helmert's parabolas meet.
+const CELLS_PER_SHAPE: f64 = 16.0;
 
 /// The line at one point: origin, heading and gradient.
 #[derive(Debug, Clone, Copy)]
@@ -58,17 +63,27 @@ struct Piece {
 }
 
 impl Piece {
-    fn new(start: f64, length: f64, ends: [Ends; 2], heading: f64, r_IT: Vec3) -> Self {
+    fn new(
+        start: f64,
+        length: f64,
+        ends: [Ends; 2],
+        transition: Transition,
+        heading: f64,
+        r_IT: Vec3,
+    ) -> Self {
         let rise = |f: fn(&Ends) -> f64| [f(&ends[0]), f(&ends[1]) - f(&ends[0])];
         let curvature = rise(|e| e.curvature);
         let gradient = rise(|e| e.gradient.atan());
         let turn = curvature[0].abs().max((curvature[0] + curvature[1]).abs()) * length + gradient[1].abs();
-        let cells = (turn / TURN_PER_CELL).ceil().max(1.0);
+        let mut cells = (turn / TURN_PER_CELL).ceil().max(1.0);
+        if transition != Transition::Linear {
+            cells = 2.0 * (0.5 * cells.max(CELLS_PER_SHAPE)).ceil();
+        }
         let mut piece = Self {
             start,
             length,
             per_length: 1.0 / length,
-            transition: Transition::Linear,
+            transition,
             curvature,
             cant: rise(|e| cant::sine(e.cant_mm)),
             gradient,
@@ -190,13 +205,21 @@ pub struct Layout {
     end: f64,
     last: Frame,
     tangent: bool,
+    gauge: Gauge,
 }
 
 impl Layout {
     /// Straight level track.
     #[must_use]
     pub fn tangent(length: f64) -> Self {
-        Self { pieces: Vec::new(), length, end: length, last: Frame::level(length), tangent: true }
+        Self {
+            pieces: Vec::new(),
+            length,
+            end: length,
+            last: Frame::level(length),
+            tangent: true,
+            gauge: Gauge::default(),
+        }
     }
 
     /// Compiles segments (none: straight level track) for a track of `length` metres; `at` is the path of the list.
@@ -205,8 +228,8 @@ impl Layout {
     ///
     /// # Errors
     /// Every fault at once: `length` not above 0; curvature above 0.1 1/m; both or none of `radius` and `curvature`;
-    /// cant above 320 mm; gradient above 0.2; a step of cant or gradient between two segments; two clothoids in a row;
-    /// segments that end in a curve before the track ends.
+    /// cant above 320 mm; gradient above 0.2; widening above 50 mm; a step of cant, gradient or widening between two segments;
+    /// two passages in a row; a cubic parabola between two curves or longer than it can be; segments that end in a curve before the track ends.
     pub fn new(segments: &[Segment], length: f64, at: &KeyPath) -> Result<Self> {
         let faults = faults(segments, length, at);
         if !faults.is_empty() {
@@ -215,16 +238,12 @@ impl Layout {
         let mut pieces: Vec<Piece> = Vec::with_capacity(segments.len());
         let (mut s, mut heading, mut r_IT) = (0.0, 0.0, Vec3::zeros());
         let mut end = Frame::level(0.0);
+        let mut gauge = Gauge::default();
         for (i, segment) in segments.iter().enumerate() {
-            let neighbour = |j: Option<usize>| j.and_then(|j| segments.get(j)).and_then(Segment::values);
-            let ends = match segment.values() {
-                Some(values) => [values, values],
-                None => [
-                    neighbour(i.checked_sub(1)).unwrap_or_default(),
-                    neighbour(Some(i + 1)).unwrap_or_default(),
-                ],
-            };
-            let piece = Piece::new(s, segment.length(), ends, heading, r_IT);
+            let ends = ends(segments, i);
+            let transition = segment.transition(ends);
+            let piece = Piece::new(s, segment.length(), ends, transition, heading, r_IT);
+            gauge.push(segment.length(), ends.map(|e| e.widening_mm), transition);
             s += piece.length;
             heading = piece.heading_at(piece.length);
             end = piece.frame(piece.length);
@@ -232,9 +251,9 @@ impl Layout {
             pieces.push(piece);
         }
         if pieces.iter().all(Piece::is_level_tangent) {
-            return Ok(Self::tangent(length));
+            return Ok(Self { gauge: gauge.or_nothing(), ..Self::tangent(length) });
         }
-        Ok(Self { pieces, length, end: s, last: end, tangent: false })
+        Ok(Self { pieces, length, end: s, last: end, tangent: false, gauge: gauge.or_nothing() })
     }
 
     /// Length of the track as given, m.
@@ -269,6 +288,13 @@ impl Layout {
     #[must_use]
     pub fn curvature(&self, s: f64) -> f64 {
         self.value(s, |piece| piece.curvature).unwrap_or(0.0)
+    }
+
+    /// How much wider than the track's own the gauge is at `s`, m, and its slope.
+    #[inline]
+    #[must_use]
+    pub fn widening(&self, s: f64) -> (f64, f64) {
+        self.gauge.at(s)
     }
 
     /// Cant angle at `s`, rad, + right rail lower.

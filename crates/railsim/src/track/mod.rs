@@ -3,6 +3,7 @@
 
 pub mod cant;
 mod frame;
+pub mod gauge;
 pub mod irregularity;
 mod layout;
 mod segment;
@@ -13,7 +14,7 @@ use crate::error::{Fault, KeyPath};
 pub use frame::Frame;
 pub use irregularity::{Deviation, DeviationField, Irregularity};
 pub use layout::Layout;
-pub use segment::{Clothoid, Curve, Segment, Tangent};
+pub use segment::{Curve, Passage, Segment, Tangent};
 
 /// The path of a key that stands beside `at` in the same table.
 fn beside(at: &KeyPath, key: &str) -> KeyPath {

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from lmap.report.figures import criterion, speed, track_irregularity, wheel_load, wheelset_lateral
+from lmap.report.figures import criterion, drawing, speed, track_irregularity, wheel_load, wheelset_lateral
 from lmap.report.figures.plot import Figure
 from lmap.verdict import SpecVerdict
 
 # Keep this list sorted by module; the page shows the figures in this order.
 FIGURES: tuple[Callable[[SpecVerdict], list[Figure]], ...] = (
     criterion.draw,
+    drawing.draw,
     speed.draw,
     track_irregularity.draw,
     wheel_load.draw,

@@ -79,8 +79,8 @@ def _severity(verdict: CriterionVerdict) -> tuple[int, float]:
 
 def _views(verdict: CriterionVerdict, case: CaseResult | None) -> list[View]:
     if case is None:
-        if verdict.message is None and not verdict.signals:
-            return []
+        if verdict.message is None:
+            return []  # of a case that the procedure made of others: its drawings show it
         return [
             View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "the case has no result")
         ]

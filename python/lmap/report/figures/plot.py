@@ -6,9 +6,7 @@ Colours are roles here (`raw`, `1`, `limit`): the page gives them their value, l
 
 from __future__ import annotations
 
-import base64
-import html
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +15,7 @@ import polars as pl
 
 from lmap.criteria import units
 from lmap.report.figures.envelope import Array, envelope
+from lmap.report.sheet import escape, packed
 from lmap.verdict import CaseResult
 
 TIME_AXIS = "time t (s)"
@@ -79,6 +78,8 @@ class View:
     message: str | None = None
     """Why there is nothing, or not everything, to see."""
     caption: str = ""
+    raw: Mapping[str, Any] | None = None
+    """`data` and `layout` as they are, where the plot is not over time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +125,8 @@ def wheelsets(case: CaseResult) -> list[str]:
 
 def plotly(view: View) -> dict[str, Any]:
     """`data` and `layout` for plotly.js, with roles in place of colours."""
+    if view.raw is not None:
+        return dict(view.raw)
     axes = _axes(len(view.rows))
     data = [_trace(curve) for curve in view.curves]
     span = _span(view.curves)
@@ -131,7 +134,7 @@ def plotly(view: View) -> dict[str, Any]:
         data.append(_limit(span, value, label))
     layout: dict[str, Any] = {"shapes": [], "annotations": [], "rows": len(view.rows)}
     for row, (title, domain) in enumerate(zip(view.rows, axes, strict=True)):
-        axis: dict[str, Any] = {"title": {"text": _escape(title)}, "domain": domain}
+        axis: dict[str, Any] = {"title": {"text": escape(title)}, "domain": domain}
         if row > 0:
             axis["matches"] = "y"
         limits = _range(view) if row == 0 else None
@@ -163,13 +166,13 @@ def plotly(view: View) -> dict[str, Any]:
 
 def _trace(curve: Curve) -> dict[str, Any]:
     t, values = envelope(curve.t, curve.values, curve.buckets)
-    name, unit = _escape(curve.name), _escape(curve.unit)
+    name, unit = escape(curve.name), escape(curve.unit)
     trace: dict[str, Any] = {
         "type": "scatter",
         "mode": "lines",
         "name": name,
-        "x": _packed(t),
-        "y": _packed(values),
+        "x": packed(t),
+        "y": packed(values),
         "yaxis": _axis("y", curve.row),
         "line": {"width": curve.width, "dash": curve.dash},
         "hovertemplate": f"%{{y:.4g}} {unit} at %{{x:.3f}} s<extra>{name}</extra>",
@@ -185,11 +188,11 @@ def _limit(span: list[float] | None, value: float, label: str) -> dict[str, Any]
     return {
         "type": "scatter",
         "mode": "lines",
-        "name": _escape(label),
+        "name": escape(label),
         "x": span or [0.0, 1.0],
         "y": [value, value],
         "line": {"width": 1.6, "dash": "dash"},
-        "hovertemplate": f"{_escape(label)}<extra></extra>",
+        "hovertemplate": f"{escape(label)}<extra></extra>",
         "meta": {"role": "limit", "group": "limit"},
     }
 
@@ -202,7 +205,7 @@ def _limit_label(value: float, label: str) -> dict[str, Any]:
         "y": value,
         "yanchor": "bottom" if value >= 0.0 else "top",
         "yshift": 2 if value >= 0.0 else -2,
-        "text": _escape(label),
+        "text": escape(label),
         "showarrow": False,
         "role": "limit",
     }
@@ -216,7 +219,7 @@ def _mark(mark: Mark) -> dict[str, Any]:
         "x": [mark.t],
         "y": [mark.value],
         "marker": {"size": 9, "symbol": "circle-open", "line": {"width": 2.2}},
-        "hovertemplate": "<br>".join(map(_escape, mark.text)) + "<extra></extra>",
+        "hovertemplate": "<br>".join(map(escape, mark.text)) + "<extra></extra>",
         "meta": {"role": "extreme", "group": "extreme"},
     }
 
@@ -228,7 +231,7 @@ def _mark_label(mark: Mark, span: list[float], limits: list[float] | None) -> di
     return {
         "x": mark.t,
         "y": mark.value,
-        "text": "<br>".join(map(_escape, mark.text)),
+        "text": "<br>".join(map(escape, mark.text)),
         "align": "left",
         "showarrow": True,
         "arrowhead": 0,
@@ -276,13 +279,3 @@ def _axes(rows: int) -> list[list[float]]:
 
 def _axis(name: str, row: int) -> str:
     return name if row == 0 else f"{name}{row + 1}"
-
-
-def _packed(values: Array) -> dict[str, str]:
-    """Single precision in base 64, little-endian: a fifth of the size of digits, and seven of them."""
-    return {"dtype": "f4", "bdata": base64.b64encode(values.astype("<f4").tobytes()).decode("ascii")}
-
-
-def _escape(text: str) -> str:
-    """plotly.js reads a part of HTML in its texts: none of it may come from a name."""
-    return html.escape(text, quote=False)

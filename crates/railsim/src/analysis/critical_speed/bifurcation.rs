@@ -1,13 +1,11 @@
 //! Bifurcation diagram: amplitude of the limit cycle against speed, the speed stepped down from hunting and up again from
 //! rest. Between the two jumps both motions are possible: what a disturbance decides.
 
-use std::collections::BTreeMap;
-
 use serde_json::json;
 
-use crate::analysis::critical_speed::roller::{Roller, offsets, on_straight_track, stride, swing};
+use crate::analysis::critical_speed::roller::{Roller, on_straight_track, stride, swing};
 use crate::analysis::{Stand, Table};
-use crate::dynamics::Model;
+use crate::dynamics::{Model, coordinate};
 use crate::error::{Error, Result};
 use crate::run::{Control, Ended, Outcome};
 use crate::schema::Case;
@@ -47,16 +45,10 @@ impl Reading {
 /// A row for each speed, first down (`direction` -1), then up (+1): `swing` of each axle, peak to peak in the window after
 /// settling. `critical_speed` is the lowest speed on the way down that still hunts, `critical_speed_up` the first on the way up
 /// that hunts again; NaN where there is none.
-pub(super) fn run(
-    case: &Case,
-    steps: &Steps,
-    disturbance: &BTreeMap<String, f64>,
-    hunting: &Hunting,
-    control: &dyn Control,
-) -> Result<Outcome> {
+pub(super) fn run(case: &Case, steps: &Steps, hunting: &Hunting, control: &dyn Control) -> Result<Outcome> {
     let mut stand = Stand::new(case)?;
     on_straight_track(&stand.model)?;
-    let offsets = offsets(&stand.model, disturbance)?;
+    let offsets = coordinate::disturbance(&stand.model, &case.run.disturbance)?;
     let x = stand.settle(case.run.speed)?;
     let mut roller = Roller::new(case, &stand, x, &offsets)?;
     let count = ((case.run.speed - steps.end_speed) / steps.speed_step).round().max(1.0) as usize;

@@ -7,6 +7,7 @@ mod ramp_down;
 mod roller;
 
 use crate::analysis::Stand;
+use crate::dynamics::coordinate;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::run::{Control, Outcome};
 use crate::schema::Case;
@@ -19,17 +20,17 @@ use crate::schema::run::Search;
 pub fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
     match search(case)? {
         Search::Linear { range, spacing } => linear::run(case, *range, *spacing, control),
-        Search::RampDown { end_speed, deceleration, disturbance, hunting } => {
-            ramp_down::run(case, *end_speed, *deceleration, disturbance, hunting, control)
+        Search::RampDown { end_speed, deceleration, hunting } => {
+            ramp_down::run(case, *end_speed, *deceleration, hunting, control)
         }
-        Search::Bifurcation { end_speed, speed_step, disturbance, acceleration, settle_s, hunting } => {
+        Search::Bifurcation { end_speed, speed_step, acceleration, settle_s, hunting } => {
             let steps = bifurcation::Steps {
                 end_speed: *end_speed,
                 speed_step: *speed_step,
                 acceleration: *acceleration,
                 settle_s: *settle_s,
             };
-            bifurcation::run(case, &steps, disturbance, hunting, control)
+            bifurcation::run(case, &steps, hunting, control)
         }
     }
 }
@@ -41,8 +42,8 @@ pub fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
 pub fn columns(case: &Case) -> Result<Vec<String>> {
     let stand = Stand::new(case)?;
     let search = search(case)?;
-    if let Search::RampDown { disturbance, .. } | Search::Bifurcation { disturbance, .. } = search {
-        roller::offsets(&stand.model, disturbance)?;
+    if !matches!(search, Search::Linear { .. }) {
+        coordinate::disturbance(&stand.model, &case.run.disturbance)?;
         roller::on_straight_track(&stand.model)?;
     }
     Ok(match search {

@@ -1,13 +1,11 @@
 //! The paper's way: start very fast and disturbed, brake slowly, and read the speed at which hunting ends (Spiryagin et al.,
 //! Proc. IMechE F 227 (2013), test 1.6).
 
-use std::collections::BTreeMap;
-
 use serde_json::json;
 
-use crate::analysis::critical_speed::roller::{Roller, offsets, on_straight_track, stride, swing};
+use crate::analysis::critical_speed::roller::{Roller, on_straight_track, stride, swing};
 use crate::analysis::{Stand, Table};
-use crate::dynamics::Model;
+use crate::dynamics::{Model, coordinate};
 use crate::error::{Error, Result};
 use crate::run::{Control, Ended, Outcome};
 use crate::schema::Case;
@@ -29,13 +27,12 @@ pub(super) fn run(
     case: &Case,
     end_speed: f64,
     deceleration: f64,
-    disturbance: &BTreeMap<String, f64>,
     hunting: &Hunting,
     control: &dyn Control,
 ) -> Result<Outcome> {
     let mut stand = Stand::new(case)?;
     on_straight_track(&stand.model)?;
-    let offsets = offsets(&stand.model, disturbance)?;
+    let offsets = coordinate::disturbance(&stand.model, &case.run.disturbance)?;
     let x = stand.settle(case.run.speed)?;
     let mut roller = Roller::new(case, &stand, x, &offsets)?;
     roller.accelerate(-deceleration);

@@ -1,25 +1,11 @@
 //! A vehicle rolling on ideal straight track while its speed is changed.
 
-use std::collections::BTreeMap;
-
-use crate::analysis::{Stand, coordinate};
+use crate::analysis::Stand;
 use crate::dynamics::{Model, SpeedProgram, VehicleSystem};
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{Integrator, StepEnd, Stepper, System};
+use crate::integrator::{Integrator, Stepper, System};
 use crate::run::{divergence, stability};
 use crate::schema::Case;
-
-/// State index and offset of every disturbed coordinate.
-///
-/// # Errors
-/// A coordinate that does not exist.
-pub(super) fn offsets(model: &Model, disturbance: &BTreeMap<String, f64>) -> Result<Vec<(usize, f64)>> {
-    let at = KeyPath::of("run.search.disturbance");
-    disturbance
-        .iter()
-        .map(|(name, by)| coordinate::find(model, name, &at.key(name)).map(|c| (c.q, *by)))
-        .collect()
-}
 
 /// Refuses a layout that is not straight and a vehicle whose speed nothing holds.
 ///
@@ -128,17 +114,8 @@ impl<'m> Roller<'m> {
             let t = self.steps as f64 * self.h;
             let end = self.stepper.step(&mut self.system, t, &mut self.x, self.h);
             self.steps += 1;
-            if let StepEnd::Singular { block } = end {
-                return Err(Error::Diverged {
-                    t: self.time(),
-                    s: self.place(),
-                    body: self.system.model.wheelsets[block].body.name.clone(),
-                    cause:
-                        "the implicit step has no solution: a number that is not finite in wheel and track"
-                            .into(),
-                });
-            }
             let time = self.time();
+            divergence::stepped(&self.system, end, time, &self.x)?;
             divergence::check(&mut self.system, time, &self.x)?;
         }
         Ok(())

@@ -105,6 +105,7 @@ impl GeometryTable {
             placement: *placement,
             rail_origin_y,
             rail,
+            flange_angle: wheel.stations().iter().fold(0.0, |most, s| most.max(-s.direction)),
             gaps: Vec::with_capacity(SHIFTS * ROLLS),
             values: [Vec::with_capacity(SHIFTS * ROLLS), Vec::with_capacity(SHIFTS * ROLLS)],
             split: [None, None],

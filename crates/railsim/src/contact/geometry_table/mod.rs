@@ -38,8 +38,10 @@
 mod build;
 mod gauge;
 mod seam;
+pub mod store;
 
 pub(crate) use build::{check, place_rail};
+pub use store::{Pair, Tables};
 
 use crate::contact::hertz;
 use crate::contact::profile::Profile;
@@ -196,6 +198,7 @@ pub struct GeometryTable {
     placement: Placement,
     rail_origin_y: f64,
     rail: Profile,
+    flange_angle: f64,
     /// [roll][shift]
     gaps: Vec<Gaps>,
     values: [Vec<Values>; 2],
@@ -256,6 +259,12 @@ impl GeometryTable {
     #[must_use]
     pub fn rail_origin_y(&self) -> f64 {
         self.rail_origin_y
+    }
+
+    /// Steepest angle of the wheel profile's flange face against the axle, rad: Nadal's.
+    #[must_use]
+    pub fn flange_angle(&self) -> f64 {
+        self.flange_angle
     }
 
     /// The rail as it stands: inclined, its highest point at z = 0.

@@ -1,5 +1,7 @@
 //! Coordinates by name: `carbody.y`, `ws1.track_phi`.
 
+use std::collections::BTreeMap;
+
 use crate::dynamics::Model;
 use crate::error::{Error, Fault, KeyPath, Result};
 
@@ -44,6 +46,15 @@ pub fn find(model: &Model, name: &str, at: &KeyPath) -> Result<Coordinate> {
         };
         Error::input(fault)
     })
+}
+
+/// State index and offset (m or rad) of every coordinate of `run.disturbance`.
+///
+/// # Errors
+/// A coordinate that does not exist.
+pub fn disturbance(model: &Model, written: &BTreeMap<String, f64>) -> Result<Vec<(usize, f64)>> {
+    let at = KeyPath::of("run.disturbance");
+    written.iter().map(|(name, by)| find(model, name, &at.key(name)).map(|c| (c.q, *by))).collect()
 }
 
 /// Every coordinate of a model: of bodies, of wheelsets, then of the track masses that it has.

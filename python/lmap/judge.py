@@ -1,0 +1,230 @@
+"""From what a spec's cases gave to its verdict."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from lmap.errors import JudgementProblem, listed
+from lmap.verdict import (
+    CaseResult,
+    CriterionVerdict,
+    Drawing,
+    Held,
+    SpecVerdict,
+    outcome_of,
+)
+
+if TYPE_CHECKING:
+    import polars as pl
+    from pydantic import TypeAdapter
+
+    from lmap.execute.local import CaseOutcome
+    from lmap.execute.store import Store
+    from lmap.prepare import Prepared
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """What reading the frames came to: all that a second check needs."""
+
+    criteria: tuple[CriterionVerdict, ...]
+    drawings: tuple[Drawing, ...]
+
+
+def judge_spec(
+    prepared: Prepared, outcomes: Mapping[str, CaseOutcome], store: Store | None = None
+) -> SpecVerdict:
+    """The spec's verdict; `outcomes` by the hash of the case.
+
+    Frames are read, judged and let go. What came of it is noted in the `store` under everything that it hangs on, and
+    taken from there the next time.
+    """
+    results = {case.label: outcomes[case.hash] for case in prepared.cases}
+    key = _key(prepared, results)
+    judged = _noted(store, key)
+    if judged is None:
+        judged = _read(prepared, results)
+        if store is not None and key is not None:
+            store.write_note(key, _plain(judged))
+    return _verdict(prepared, results, judged)
+
+
+def _read(prepared: Prepared, results: Mapping[str, CaseOutcome]) -> _Judged:
+    from lmap.procedures import Illustrated
+
+    procedure = prepared.procedure
+    quantities, troubles = _quantities(prepared, results, _frames(results))
+    units = {name: channel.unit for name, channel in prepared.channels.items()}
+    criteria = _criteria(prepared, quantities, troubles, units)
+    drawings: Sequence[Drawing] = ()
+    if isinstance(procedure, Illustrated) and not troubles:
+        drawings = procedure.drawings(prepared.spec, quantities, prepared.vehicle.data)
+    return _Judged(criteria, tuple(drawings))
+
+
+def _frames(results: Mapping[str, CaseOutcome]) -> dict[str, pl.DataFrame]:
+    import polars as pl
+
+    read = {label: outcome.frame for label, outcome in results.items()}
+    return {label: pl.DataFrame() if frame is None else frame for label, frame in read.items()}
+
+
+class _Stored:
+    """Frames of a spec's cases that are read when somebody asks, and judged quantities made of them."""
+
+    def __init__(self, prepared: Prepared, results: Mapping[str, CaseOutcome]) -> None:
+        self._prepared, self._results = prepared, results
+
+    def frame(self, label: str) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+        return _frames({label: self._results[label]})[label]
+
+    def quantities(self, label: str) -> pl.DataFrame:
+        """What the criteria judged; takes the frames of all cases."""
+        return self.held()[label].judged
+
+    def held(self) -> Mapping[str, Held]:
+        """All of them, read once, by label."""
+        frames = _frames(self._results)
+        quantities, _ = _quantities(self._prepared, self._results, frames)
+        return {label: Held(frame, quantities.get(label, frame)) for label, frame in frames.items()}
+
+
+def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Judged) -> SpecVerdict:
+    spec, look = prepared.spec, prepared.look
+    units = {name: channel.unit for name, channel in prepared.channels.items()}
+    meanings = {name: channel.meaning for name, channel in prepared.channels.items()}
+    frames = _Stored(prepared, results)
+    cases = tuple(
+        CaseResult(
+            label=case.label,
+            hash=case.hash,
+            case=case.data,
+            case_json=case.json,
+            frames=frames,
+            ended=outcome.ended,
+            statistics=outcome.statistics,
+            units=units,
+            meanings=meanings,
+            wall_s=outcome.wall_s,
+            known_extent=outcome.extent,
+        )
+        for case, outcome in ((case, results[case.label]) for case in prepared.cases)
+    )
+    return SpecVerdict(
+        id=spec.id,
+        title=spec.title,
+        file=prepared.loaded.asked.shown,
+        procedure=spec.procedure,
+        vehicle=prepared.vehicle.data.name,
+        condition=spec.condition or "",
+        outcome=outcome_of(judged.criteria),
+        criteria=judged.criteria,
+        facts=prepared.facts,
+        cases=cases,
+        inputs=prepared.inputs,
+        overrides=prepared.loaded.settings,
+        drawing=None if look is None else look.drawing,
+        drawings=judged.drawings,
+    )
+
+
+def _quantities(
+    prepared: Prepared, results: Mapping[str, CaseOutcome], frames: Mapping[str, pl.DataFrame]
+) -> tuple[dict[str, pl.DataFrame], dict[str, str]]:
+    """What is judged, by label, and why a label cannot be: its run ended early, or the procedure says so."""
+    troubles = {label: outcome.trouble for label, outcome in results.items() if outcome.trouble is not None}
+    complete = {label: frame for label, frame in frames.items() if label not in troubles}
+    early = {label: frames[label] for label in troubles}
+    if not complete:
+        return early, troubles
+    try:
+        made = prepared.procedure.quantities(prepared.spec, complete, prepared.vehicle.data)
+    except JudgementProblem as problem:
+        return dict(frames), {label: str(problem) for label in complete} | troubles
+    order = [*(label for label in frames if label in made or label in early), *made]
+    return {label: made[label] if label in made else early[label] for label in order}, troubles
+
+
+def _criteria(
+    prepared: Prepared,
+    quantities: Mapping[str, pl.DataFrame],
+    troubles: Mapping[str, str],
+    units: Mapping[str, str],
+) -> tuple[CriterionVerdict, ...]:
+    """Every criterion in every case that it applies to."""
+    import polars as pl
+
+    from lmap.criteria import judge
+
+    look = prepared.look
+    hashes = {case.label: case.hash for case in prepared.cases}
+    judged = dict(quantities) if look is None else {look.label: look.frame}
+    if look is not None:
+        hashes = {look.label: look.hash}
+    found = []
+    for index, criterion in enumerate(prepared.spec.criterion):
+        labels = [label for label in judged if criterion.applies_to(label)]
+        for label in labels:
+            verdict = judge(
+                criterion,
+                judged[label],
+                units,
+                index=index,
+                label=label,
+                case_hash=hashes.get(label, ""),
+                ended=troubles.get(label),
+            )
+            found.append(verdict)
+        if not labels:
+            why = f"no case is called {listed(criterion.case or ())}: there are {listed(judged, 40)}"
+            why = next(iter(troubles.values()), why)
+            found.append(judge(criterion, pl.DataFrame(), units, index=index, ended=why))
+    if look is not None:
+        found.append(look.by_person)
+    return tuple(found)
+
+
+# ---- notes
+
+
+def _key(prepared: Prepared, results: Mapping[str, CaseOutcome]) -> str | None:
+    """Of the note; none where there is nothing to save or a case gave no result that is kept."""
+    from lmap.execute.store import StoredFrame
+
+    if prepared.key is None or not all(isinstance(one.source, StoredFrame) for one in results.values()):
+        return None
+    return hashlib.sha256(f"judged {prepared.key}".encode()).hexdigest()
+
+
+def _noted(store: Store | None, key: str | None) -> _Judged | None:
+    from pydantic import ValidationError
+
+    plain = None if store is None or key is None else store.note(key)
+    if plain is None:
+        return None
+    try:
+        return _adapter().validate_python(plain)
+    except ValidationError:
+        return None
+
+
+def _plain(judged: _Judged) -> Any:
+    return json.loads(json.dumps(_adapter().dump_python(judged), default=_as_list))
+
+
+@functools.cache
+def _adapter() -> TypeAdapter[_Judged]:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(_Judged)
+
+
+def _as_list(value: Any) -> Any:
+    """Arrays and numbers of numpy as Python's own."""
+    return value.tolist()

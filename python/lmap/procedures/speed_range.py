@@ -1,0 +1,116 @@
+"""A range of speeds over the track that the spec writes: irregularities, isolated or cyclic, straight or in a curve.
+
+One run for every wheel profile and speed, and beside them the vehicle at rest (`wheel_forces`). `[test]` says where
+a run begins and ends, which may depend on the speed: so that it lasts long enough before and after what it
+passes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from lmap.errors import InputProblem, Problem
+from lmap.procedures import wheel_forces
+from lmap.procedures.base import CaseFigures, expand, settings
+from lmap.spec.case import Case, VehicleData
+from lmap.spec.model import Spec
+from lmap.verdict import Fact
+
+if TYPE_CHECKING:
+    import polars as pl
+
+NAME = "speed_range"
+SUMMARY = "one run for each speed over irregularities, on straight track or in a curve"
+UNITS: Mapping[str, str] = {}
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Place(_Table):
+    """A place on the track that moves with the speed."""
+
+    at_m: float = Field(allow_inf_nan=False)
+    """m along the track."""
+    travel_s: float = Field(ge=0.0, allow_inf_nan=False)
+    """s of travel before (of a start) or after it (of an end)."""
+
+
+class Slow(_Table):
+    """What runs below a speed are stepped with: the damping of creep is inversely proportional to the speed."""
+
+    below_kmh: float = Field(gt=0.0, allow_inf_nan=False)
+    integrator: dict[str, Any]
+    """In place of `run.integrator`; checked by the core."""
+
+
+class Settings(_Table):
+    """`[test]`."""
+
+    start: Place | None = None
+    """Where the first wheelset is at the start; the beginning of the track if absent."""
+    end: Place | None = None
+    """Where the run ends; `track.length` if absent."""
+    slow: list[Slow] = Field(default_factory=list)
+    """The entry with the lowest `below_kmh` above a run's speed holds for it; else `run.integrator`."""
+    prudhomme_factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
+    """K of Prud'homme's limit: 1.0 for locomotives."""
+
+
+SETTINGS = Settings
+
+
+def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
+    """A run for every wheel profile and speed, then the vehicle at rest."""
+    own = settings(spec, Settings)
+    runs = [_placed(case, own) for case in expand(spec, vehicle)]
+    return [stepped(case, own.slow) for case in runs] + wheel_forces.static_cases(spec, vehicle)
+
+
+def _placed(case: Case, own: Settings) -> Case:
+    """The case with its own start and end."""
+    track, run = dict(case.data["track"]), dict(case.data["run"])
+    if own.start is not None:
+        start = own.start.at_m - own.start.travel_s * run["speed"]
+        if start < -1e-6 * own.start.at_m:
+            allowed = f"a place and a time so that the run starts at 0 m or beyond at {case.label}"
+            found = f"a start at {start:.4g} m"
+            raise InputProblem(Problem(key=("test", "start"), found=found, allowed=allowed))
+        run["start"] = max(start, 0.0)
+        if track.get("irregularity") and track.get("fade_in"):
+            track["fade_start"] = run["start"]
+    if own.end is not None:
+        track["length"] = own.end.at_m + own.end.travel_s * run["speed"]
+    return Case(case.label, {**case.data, "track": track, "run": run})
+
+
+def stepped(case: Case, slow: Sequence[Slow]) -> Case:
+    """The case with the integrator for its speed."""
+    run = case.data["run"]
+    fitting = [one for one in slow if run["speed"] * 3.6 < one.below_kmh]
+    if not fitting:
+        return case
+    nearest = min(fitting, key=lambda one: one.below_kmh)
+    return Case(case.label, {**case.data, "run": {**run, "integrator": dict(nearest.integrator)}})
+
+
+def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
+    """The columns of `wheel_forces`."""
+    return wheel_forces.derived(channels)
+
+
+def quantities(
+    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+) -> Mapping[str, pl.DataFrame]:
+    """The runs with the columns of `wheel_forces`."""
+    factor = settings(spec, Settings).prudhomme_factor
+    return wheel_forces.joined(spec, frames, vehicle, prudhomme_factor=factor)
+
+
+def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
+    """Nothing beside the verdicts."""
+    return []
