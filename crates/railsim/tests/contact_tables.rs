@@ -25,12 +25,7 @@ const PLACEMENT: Placement = Placement {
 };
 
 fn pair(gauge: f64) -> Pair {
-    Pair {
-        wheel: vec![[0.0, 0.0]],
-        rail: vec![[0.0, 0.0]],
-        placement: Placement { gauge, ..PLACEMENT },
-        penetration: 3e-5,
-    }
+    Pair { wheel: vec![[0.0, 0.0]], rail: vec![[0.0, 0.0]], placement: Placement { gauge, ..PLACEMENT } }
 }
 
 fn table() -> GeometryTable {

@@ -95,8 +95,8 @@ fn guided(vehicle: &Vehicle) -> Vec<usize> {
     vehicle.bodies.iter().enumerate().filter(|(_, b)| b.guided).map(|(i, _)| i).collect()
 }
 
-/// Geometry table of the case's wheel on its rail, without the rest of the model, averaged over the patch under the mean
-/// static wheel load; out of [`Case::tables`] where it has been built before.
+/// Geometry table of the case's wheel on its rail, without the rest of the model; out of [`Case::tables`] where it has been
+/// built before.
 ///
 /// # Errors
 /// Faults in the profiles.
@@ -104,16 +104,11 @@ pub fn geometry_table(case: &Case) -> Result<Arc<GeometryTable>> {
     let placement = placement(case)?;
     let wheel = points(case, &case.run.wheel_profile)?.to_vec();
     let rail = points(case, &case.track.rail_profile)?.to_vec();
-    let penetration = placement.penetration_under(wheel_load(case));
-    case.tables.get(Pair { wheel, rail, placement, penetration }, || {
+    let pair = Pair { wheel, rail, placement };
+    case.tables.get(pair, || {
         let (wheel, rail, placement) = contact_pair(case)?;
-        GeometryTable::build_at(&wheel, &rail, &placement, penetration)
+        GeometryTable::build(&wheel, &rail, &placement)
     })
-}
-
-/// Mean static load of a wheel, N.
-fn wheel_load(case: &Case) -> f64 {
-    case.vehicle.mass() * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64)
 }
 
 /// The same pair for direct search ([`Side`]).
@@ -184,7 +179,8 @@ fn contact(case: &Case) -> Result<Contact> {
         return Ok(Contact::Textbook(*book));
     }
     let settings = &case.vehicle.contact;
-    let wheel_load = wheel_load(case);
+    let mass = case.vehicle.mass();
+    let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
     Ok(Contact::Profiles {
         table: geometry_table(case)?,
         law: case.run.creep.with_poisson(settings.poisson),
