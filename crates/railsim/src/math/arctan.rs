@@ -12,7 +12,7 @@ const STEEP: f64 = 2.414_213_562_373_095;
 #[inline(always)]
 #[must_use]
 pub fn arctan(x: f64) -> f64 {
-    if !(x >= 0.0 && x < f64::INFINITY) {
+    if !(0.0..f64::INFINITY).contains(&x) {
         return x.atan();
     }
     let (base, x) = if x > STEEP {

@@ -1,6 +1,6 @@
 //! Building a [`GeometryTable`]: two searches per node, coarse over the whole wheel, fine where it may touch.
 
-use super::seam::Seams;
+use super::seam::{Seams, USUAL_ROLL};
 use super::{
     BLEND_FROM, BLEND_TO, Gaps, GeometryTable, LEAST_CURVATURE, LEAST_PENETRATION, MOST_PENETRATION, NO_RAIL,
     PENETRATION, Part, Placement, ROLL_RANGE, ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values,
@@ -126,7 +126,7 @@ impl GeometryTable {
         let mut scratch = Scratch::default();
         let mut near: [Vec<(usize, f64)>; 2] = Default::default();
         let mut extents: [Vec<Range<usize>>; 2] = Default::default();
-        scene.nodes(self.rail_origin_y, wheel, |turned, offset| {
+        scene.nodes(self.rail_origin_y, wheel, |turned, roll, offset| {
             scene.look(turned, offset, 0..stations.len(), &mut scratch);
             let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
             for zone in 0..2 {
@@ -143,7 +143,8 @@ impl GeometryTable {
                 extents[zone].push(extent(turned, &near[zone], gaps.gap[zone], penetration));
             }
             let least = gaps.gap[0].min(gaps.gap[1]);
-            for zone in (0..2).filter(|&z| gaps.gap[z] - least < approach) {
+            let usual = roll.abs() < USUAL_ROLL;
+            for zone in (0..2).filter(|&z| usual && gaps.gap[z] - least < approach) {
                 seams[zone].note(turned, &supports[zone].chi, &near[zone], gaps.gap[zone], approach);
             }
             self.gaps.push(gaps);
@@ -170,7 +171,7 @@ impl GeometryTable {
 fn extent(turned: &[Turned], fine: &[(usize, f64)], least: f64, penetration: f64) -> Range<usize> {
     let mut within = fine.iter().filter(|(k, g)| (g - least) * turned[*k].cos < penetration).map(|(k, _)| *k);
     match within.next() {
-        Some(first) => first..within.last().unwrap_or(first) + 1,
+        Some(first) => first..within.next_back().unwrap_or(first) + 1,
         None => 0..0,
     }
 }
@@ -250,7 +251,7 @@ struct Scene<'a> {
 
 impl Scene<'_> {
     /// Goes through all nodes in the order of the table.
-    fn nodes(&self, rail_origin_y: f64, wheel: &Profile, mut node: impl FnMut(&[Turned], f64)) {
+    fn nodes(&self, rail_origin_y: f64, wheel: &Profile, mut node: impl FnMut(&[Turned], f64, f64)) {
         let nominal = self.placement.tape_half_distance - rail_origin_y;
         let mut turned = Vec::with_capacity(self.stations.len());
         for j in 0..ROLLS {
@@ -267,7 +268,7 @@ impl Scene<'_> {
                 }
             }));
             for i in 0..SHIFTS {
-                node(&turned, nominal - SHIFT_RANGE + SHIFT_STEP * i as f64);
+                node(&turned, roll, nominal - SHIFT_RANGE + SHIFT_STEP * i as f64);
             }
         }
     }
@@ -283,7 +284,7 @@ impl Scene<'_> {
     ) -> Part {
         let count = SHIFTS * ROLLS;
         let mut out = Part { gaps: Vec::with_capacity(count), values: Vec::with_capacity(count) };
-        self.nodes(rail_origin_y, wheel, |turned, offset| {
+        self.nodes(rail_origin_y, wheel, |turned, _, offset| {
             let (gap, values) = known(out.gaps.len()).unwrap_or_else(|| {
                 self.look(turned, offset, support.first..support.end, scratch);
                 self.node(turned, offset, support, scratch)

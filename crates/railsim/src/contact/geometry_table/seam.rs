@@ -1,12 +1,14 @@
 //! Where a zone of the wheel touches in two places at once.
 //!
-//! While a table is built, every node is noted at which the wheel, lowered by the approach under load, would press two patches of one zone into the rail: the stations
+//! While a table is built, every node of usual roll is noted at which the wheel, lowered by the approach under load, would press two patches of one zone into the rail: the stations
 //! between the two deepest count for a seam there, those within them against it, each by how deep the lesser patch reaches.
 //! Where that comes to half the approach somewhere, the zone is cut where most counts for it.
 
 use super::build::Turned;
 use std::ops::Range;
 
+/// Roll of a wheel against its rail within which a pair is looked at, rad: more turns it into a pair of another inclination.
+pub(super) const USUAL_ROLL: f64 = 5e-3;
 /// Depth of the lesser patch, as a part of the approach, from which on a zone is cut: it then carries a third of the other's load.
 const LEAST_DEPTH: f64 = 0.5;
 /// A seam is what has this part of the greatest count.
