@@ -81,6 +81,7 @@ def inner(frame: pl.DataFrame, start: float, end: float) -> float:
     return float(on_it.select(pl.col("ws1.right.LV").mean()).item())
 
 
+@pytest.mark.slow
 def test_friction_is_that_of_the_rail_the_place_and_the_slip_velocity(run: Run) -> None:
     dry, wet = run("0.4"), run("0.15")
     # in the sharp curve creep is near to friction, and no more than friction
