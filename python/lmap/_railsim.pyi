@@ -4,7 +4,7 @@ Everything that runs for long releases the GIL. Documents, cases and overrides c
 was written. SI units; profiles alone are in millimetres, as their files are.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypedDict, final
 
 from typing_extensions import Buffer, CapsuleType
@@ -37,6 +37,7 @@ __all__ = [
     "read_profile",
     "rolling_radius_difference",
     "run_cases",
+    "run_controlled",
     "smooth_profile",
     "toml_line",
     "toml_to_json",
@@ -347,6 +348,21 @@ def run_cases(
 
     An exception from a callback stops every run, within a step, and is raised again; so does Ctrl-C, as
     `KeyboardInterrupt`, within a second.
+    """
+
+def run_controlled(
+    case_json: str,
+    name: str,
+    channels: Sequence[str],
+    controller: Callable[[float, dict[str, float]], Mapping[str, float | Sequence[float]] | None],
+    on_progress: Callable[[int, float, float, float], object],
+    on_done: Callable[[int, Frame | RailsimError], object],
+) -> None:
+    """`run_cases` of one case with a control law at every sample of `run.drive.period`.
+
+    `controller(t, seen)` is called on another thread with the time (s) and the `channels` by name; it gives
+    `torque` (N m, a number for each wheelset) and `independent_brake` (Pa), either or none. `name` is what
+    messages call it. An exception in it, or an answer that is no finite number, is the case's failure.
     """
 
 def _run_probes(

@@ -160,7 +160,7 @@ def _criteria(
     """Every criterion in every case that it applies to."""
     import polars as pl
 
-    from lmap.criteria import judge
+    from lmap.criteria import judge, not_assessed
 
     look = prepared.look
     hashes = {case.label: case.hash for case in prepared.cases}
@@ -171,6 +171,10 @@ def _criteria(
     for index, criterion in enumerate(prepared.spec.criterion):
         labels = [label for label in judged if criterion.applies_to(label)]
         for label in labels:
+            if not prepared.vehicle.data.declares(criterion.needs):
+                of = hashes.get(label, "")
+                found.append(not_assessed(criterion, index=index, label=label, case_hash=of))
+                continue
             verdict = judge(
                 criterion,
                 judged[label],

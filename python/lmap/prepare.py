@@ -123,7 +123,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
     noted = None if store is None else _noted(store, key)
     if noted is None:
         known = _checked(spec, cases, sources, procedure)
-        _check_signals(loaded, spec, known)
+        _check_signals(loaded, spec, known, vehicle)
         facts = tuple(procedure.facts(spec, [_Figures(case) for case in cases]))
         if store is not None:
             store.write_note(key, [list(known.values()), [asdict(fact) for fact in facts]])
@@ -177,7 +177,7 @@ def _looked_at(
     """A spec whose procedure simulates nothing."""
     look = procedure.look(spec, vehicle.data, loaded.parameters)
     known = {name: Channel(name, unit, "") for name, unit in look.units.items()}
-    _check_signals(loaded, spec, known)
+    _check_signals(loaded, spec, known, vehicle)
     return Prepared(
         loaded=loaded,
         spec=spec,
@@ -329,6 +329,7 @@ def _checked(
         return sources.locate(problem)
 
     known: dict[str, Channel] = {}
+    asked: set[str] = set()
     problems: list[Problem] = []
     asked: set[str] = set()
     for case in cases:
@@ -359,11 +360,12 @@ def _names_hang_on(case: Case) -> str:
     return json.dumps({**part, "run": run, "track": track}, sort_keys=True)
 
 
-def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel]) -> None:
+def _check_signals(loaded: LoadedSpec, spec: Spec, known: Mapping[str, Channel], vehicle: Vehicle) -> None:
     units = {name: channel.unit for name, channel in known.items()}
     problems = [
         loaded.locate(problem.at(prefix=("criterion", index)))
         for index, criterion in enumerate(spec.criterion)
+        if vehicle.data.declares(criterion.needs)
         for problem in signal_problems(criterion, units)
     ]
     if problems:

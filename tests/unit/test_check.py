@@ -222,7 +222,7 @@ def test_a_spec_given_twice_runs_once_and_equal_cases_run_once() -> None:
     text = Path("specs/sway.toml").read_text(encoding="utf-8")
     Path("specs/again.toml").write_text(text.replace('"9.1"', '"9.2"'), encoding="utf-8")
     acceptance = lmap.check(["specs", "sway"], progress=heard)
-    assert [spec.id for spec in acceptance.specs] == ["9.2", "9.1"]
+    assert [spec.id for spec in acceptance.specs] == ["9.1", "9.2"]
     assert [event[1:] for event in heard.events if event[0] == "done"] == [(1, None), (0, None)]
     assert heard.events[-1] == ("end",)
 

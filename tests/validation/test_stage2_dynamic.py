@@ -91,7 +91,9 @@ def test_gaps_show_the_yaw_of_a_bogie_in_a_curve(compare: Compare) -> None:
     row = simulate(_case(run, {"layout": layout, "length": 200.0})).row(0, named=True)
     turned = (row["sill_rear_bogie1_right.clearance"] - row["sill_front_bogie1_right.clearance"]) / 5.2
     yaw = row["bogie1.psi"] - row["carbody.psi"]
-    compare("yaw of the bogie under the body (mrad)", 1e3 * turned, 1e3 * (6.6 / radius + yaw), 0.05, "geometry")
+    compare(
+        "yaw of the bogie under the body (mrad)", 1e3 * turned, 1e3 * (6.6 / radius + yaw), 0.05, "geometry"
+    )
     both = row["stop_bogie1_right.clearance"] + row["stop_bogie1_left.clearance"]
     compare("both stops together (mm)", 1e3 * both, 60.0, 1.0, "as drawn: 30 mm each")
 
@@ -118,13 +120,23 @@ def test_rollover_is_that_of_the_rigid_vehicle_its_lean_and_its_spinning_axles(c
     # the body that of the bogie centres
     chord = {name: 2 / 3 * 1.9**2 / 1600.0 for name in ("bogie1", "bogie2")}
     chord["carbody"] = chord["bogie1"] + 6.6**2 / 1600.0
-    shifts = [m * (chord.get(name, 0.0) - float(steady[f"{name}.y"].mean())) for name, (m, _) in masses.items()]
+    shifts = [
+        m * (chord.get(name, 0.0) - float(steady[f"{name}.y"].mean())) for name, (m, _) in masses.items()
+    ]
     speed, sine = float(result.case["run"]["speed"]), 0.1 / 1.5
     normal = GRAVITY * math.sqrt(1.0 - sine**2) + speed**2 / 800.0 * sine
     spin = 6 * 1200.0 * speed / 0.5335 * speed / 800.0
-    share = formulas.rollover_unloading(0.72, height, normal) + (sum(shifts) + spin / normal) / (weight * 0.75)
+    share = formulas.rollover_unloading(0.72, height, normal) + (sum(shifts) + spin / normal) / (
+        weight * 0.75
+    )
     theirs = 1.0 - normal / GRAVITY * (1.0 - share)
     ours = float(steady["carbody.right.unloading"].mean())
     rigid = formulas.rollover_unloading(0.72, height, GRAVITY)
-    compare("unloading of the low rail, 0.72 m/s2 (%)", 100 * ours, 100 * theirs, 4 * theirs, "a h/(g b), lean, spin")
+    compare(
+        "unloading of the low rail, 0.72 m/s2 (%)",
+        100 * ours,
+        100 * theirs,
+        4 * theirs,
+        "a h/(g b), lean, spin",
+    )
     assert rigid < ours < 1.5 * rigid  # the rigid vehicle's 14.7 %, and what is above

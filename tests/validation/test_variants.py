@@ -23,7 +23,7 @@ def frames(store: Store, jobs: int, speeds: list[float]) -> dict[str, bytes]:
 
 
 def test_one_and_two_threads_together_and_alone_give_the_same_bytes() -> None:
-    speeds = [90.0, 100.0, 110.0]
+    speeds = [100.0, 110.0, 120.0]
     one, two, first = open_store(cache=False), open_store(cache=False), open_store(cache=False)
     together = frames(one, 1, speeds)
     assert len(together) == 6

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use railsim::KeyPath;
 use railsim::analysis;
-use railsim::run::Outcome;
+use railsim::run::{Action, Law, Outcome, Outside, simulate_controlled};
 use railsim::schema::Case;
 use railsim::track::irregularity::DeviationField;
 
@@ -90,6 +92,67 @@ pub fn run_cases(
         },
         &mut Callbacks { on_progress, on_done },
     )
+}
+
+/// Runs one case with a Python function as control law: `controller(t, seen)` with `seen` a dict of the channels, gives a dict with
+/// `torque` (N m, a number for each wheelset) and `independent_brake` (Pa), or nothing.
+#[pyfunction]
+pub fn run_controlled(
+    py: Python<'_>,
+    case_json: String,
+    name: String,
+    channels: Vec<String>,
+    controller: Py<PyAny>,
+    on_progress: Py<PyAny>,
+    on_done: Py<PyAny>,
+) -> PyResult<()> {
+    let controller = &controller;
+    enter(
+        py,
+        1,
+        NonZeroUsize::MIN,
+        |_, control| {
+            let mut law = PythonLaw { controller, channels: &channels };
+            let mut outside = Outside { name: name.clone(), channels: channels.clone(), law: &mut law };
+            simulate_controlled(&Case::from_json(&case_json)?, control, &mut outside)
+        },
+        &mut Callbacks { on_progress, on_done },
+    )
+}
+
+/// A Python function as control law.
+struct PythonLaw<'a> {
+    controller: &'a Py<PyAny>,
+    channels: &'a [String],
+}
+
+impl Law for PythonLaw<'_> {
+    fn sample(&mut self, t: f64, seen: &[f64]) -> Result<Action, String> {
+        Python::attach(|py| {
+            let dict = PyDict::new(py);
+            for (name, value) in self.channels.iter().zip(seen) {
+                dict.set_item(name, value)?;
+            }
+            let answer = self.controller.bind(py).call1((t, dict))?;
+            if answer.is_none() {
+                return Ok(Action::default());
+            }
+            let answer = answer.cast_into::<PyDict>()?;
+            let mut action = Action::default();
+            for (key, value) in answer.iter() {
+                match key.extract::<String>()?.as_str() {
+                    "torque" => action.torque = Some(value.extract()?),
+                    "independent_brake" => action.independent_brake = Some(value.extract()?),
+                    other => {
+                        let message = format!("an answer with `{other}`; allowed: torque, independent_brake");
+                        return Err(PyValueError::new_err(message));
+                    }
+                }
+            }
+            Ok(action)
+        })
+        .map_err(|error: PyErr| error.to_string())
+    }
 }
 
 /// Hands what happens to two Python functions.

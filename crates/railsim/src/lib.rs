@@ -18,6 +18,7 @@ pub mod body;
 pub mod connection;
 pub mod contact;
 pub mod dynamics;
+pub mod equipment;
 pub mod error;
 pub mod integrator;
 pub mod lint;

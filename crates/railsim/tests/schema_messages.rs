@@ -417,7 +417,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/track/irregularity",
             json!({ "kind": "bump" }),
-            "track.irregularity.kind: found \"bump\"; allowed: \"psd\", \"shape\"",
+            "track.irregularity.kind: found \"bump\"; allowed: \"psd\", \"shape\", \"measured\"",
         ),
         (
             "/track/layout",

@@ -2,6 +2,24 @@
 
 from __future__ import annotations
 
-from lmap.criteria.chain import Criterion, Stage, chain_problems, expand, judge, signal_problems, trace
+from lmap.criteria.chain import (
+    Criterion,
+    Stage,
+    chain_problems,
+    expand,
+    judge,
+    not_assessed,
+    signal_problems,
+    trace,
+)
 
-__all__ = ["Criterion", "Stage", "chain_problems", "expand", "judge", "signal_problems", "trace"]
+__all__ = [
+    "Criterion",
+    "Stage",
+    "chain_problems",
+    "expand",
+    "judge",
+    "not_assessed",
+    "signal_problems",
+    "trace",
+]

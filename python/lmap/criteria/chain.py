@@ -70,6 +70,8 @@ class Criterion(BaseModel):
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
     case: Annotated[list[str] | None, BeforeValidator(_listed_names)] = Field(default=None, min_length=1)
     """Labels, or patterns of them, of the cases that it is judged in, all without it; `!` before one leaves out."""
+    needs: str | None = None
+    """Dotted key of the vehicle's file without which there are no data to judge: then it is not assessed."""
     unit: str
     max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
     max: FiniteFloat | None = None
@@ -373,6 +375,14 @@ def _readings(
         ]
     factor = _factor(_statistic(criterion.chain), given_in, criterion.unit)
     return [(name, replace(reading, value=reading.value * factor)) for name, reading in found]
+
+
+def not_assessed(
+    criterion: Criterion, *, index: int = 0, label: str = "", case_hash: str = ""
+) -> CriterionVerdict:
+    """The criterion in one case of a vehicle that declares no data for it."""
+    message = f"the vehicle declares no {criterion.needs}"
+    return _verdict(criterion, index, label, case_hash, (), Outcome.NOT_ASSESSED, message=message)
 
 
 def judge(

@@ -59,7 +59,7 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """A case for every wheel profile and speed, then for every wheel profile and search beside them."""
     found = expand(spec, vehicle, kind="critical_speed")
     profiles = spec.run.wheel_profile or [""]
-    for name, beside in settings(spec, Settings).beside.items():
+    for name, beside in sorted(settings(spec, Settings).beside.items(), key=lambda one: _rank(one[1])):
         for profile in profiles:
             own = next(case for case in found if profile in ("", case.data["run"]["wheel_profile"]))
             label = BESIDE + " ".join(part for part in (name, profile if len(profiles) > 1 else "") if part)
@@ -72,6 +72,12 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
                 run = {key: value for key, value in run.items() if key not in _STEPPED}
             found.append(Case(label, {**own.data, "label": label, "run": run}))
     return found
+
+
+def _rank(beside: Beside) -> tuple[bool, float]:
+    """Ramps first, the fastest of them before the others."""
+    rate = beside.search.get("deceleration")
+    return (not isinstance(rate, int | float), -float(rate) if isinstance(rate, int | float) else 0.0)
 
 
 def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:

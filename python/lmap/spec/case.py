@@ -39,6 +39,15 @@ class VehicleData:
     """kg, in the condition."""
     bodies: tuple[Any, ...]
 
+    def declares(self, key: str | None) -> bool:
+        """Whether the vehicle's file has a dotted key; nothing is always there."""
+        below: Any = self.document
+        for part in (key or "").split(".") if key else ():
+            if not isinstance(below, Mapping) or part not in below:
+                return False
+            below = below[part]
+        return True
+
 
 @dataclass(frozen=True)
 class Case:

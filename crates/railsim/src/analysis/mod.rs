@@ -3,6 +3,7 @@
 //!
 //! All but time stepping are of the design track: irregularities are refused.
 
+mod air_brake;
 pub mod critical_speed;
 pub mod modal;
 mod naming;
@@ -27,6 +28,7 @@ pub fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
         RunKind::Equilibrium | RunKind::QuasiStatic => quasi_static::run(case, control),
         RunKind::Modal => modal::run(case, control),
         RunKind::CriticalSpeed => critical_speed::run(case, control),
+        RunKind::AirBrake => air_brake::run(case, control),
         RunKind::Lint => Ok(crate::lint::run(case)),
     }
 }
@@ -41,6 +43,7 @@ pub fn channels(case: &Case) -> Result<Vec<Channel>> {
         RunKind::Equilibrium | RunKind::QuasiStatic => quasi_static::columns(case)?,
         RunKind::Modal => modal::columns(case)?,
         RunKind::CriticalSpeed => critical_speed::columns(case)?,
+        RunKind::AirBrake => air_brake::columns(case),
         RunKind::Lint => crate::lint::columns(),
     };
     Ok(names

@@ -13,6 +13,7 @@
 //! Here is the only place where friction depends on slip velocity: a creep law takes the coefficient that holds at its contact now
 //! and applies it once.
 
+use crate::contact::creep::Polach;
 use crate::error::{Fault, KeyPath};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -57,6 +58,18 @@ impl Falling {
     }
 }
 
+/// Reduction factors of Polach's formula ([`Polach`]) on a stretch of track, instead of those of `run.creep`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Reduction {
+    /// Factor in the area of adhesion.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub k_a: f64,
+    /// Factor in the area of slip, at most `k_a`.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub k_s: f64,
+}
+
 /// From somewhere along the track on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -83,6 +96,9 @@ pub struct Stretch {
     /// How it falls with the slip velocity; not, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub falling: Option<Falling>,
+    /// Reduction factors of Polach's formula from here on; those of `run.creep` if absent. They go over with the coefficient.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<Reduction>,
 }
 
 /// Friction that is not the same everywhere.
@@ -122,7 +138,7 @@ pub enum Friction {
 impl Varied {
     fn first(&self) -> Stretch {
         let Self { value, left, right, falling, .. } = *self;
-        Stretch { from: f64::NEG_INFINITY, transition: 0.0, value, left, right, falling }
+        Stretch { from: f64::NEG_INFINITY, transition: 0.0, value, left, right, falling, reduction: None }
     }
 }
 
@@ -147,6 +163,9 @@ impl Stretch {
             }
         }
         faults.extend(self.falling.iter().flat_map(|falling| falling.faults(&at.key("falling"))));
+        if let Some(r) = &self.reduction {
+            faults.extend(Polach { k_a: r.k_a, k_s: r.k_s }.faults(&at.key("reduction")));
+        }
         faults
     }
 }
@@ -197,6 +216,7 @@ struct Piece {
     /// Left, right.
     mu: [f64; 2],
     falling: Option<Falling>,
+    reduction: Option<Reduction>,
 }
 
 impl Piece {
@@ -223,7 +243,7 @@ impl FrictionField {
         let piece = |s: &Stretch| {
             let side = |own: Option<f64>| own.or(s.value).unwrap_or_default();
             let mu = [side(s.left), side(s.right)];
-            Piece { from: s.from, transition: s.transition, mu, falling: s.falling }
+            Piece { from: s.from, transition: s.transition, mu, falling: s.falling, reduction: s.reduction }
         };
         match friction {
             Friction::Constant(mu) => Self::constant(*mu),
@@ -236,7 +256,8 @@ impl FrictionField {
     /// One coefficient everywhere.
     #[must_use]
     pub fn constant(mu: f64) -> Self {
-        let first = Piece { from: f64::NEG_INFINITY, transition: 0.0, mu: [mu; 2], falling: None };
+        let first =
+            Piece { from: f64::NEG_INFINITY, transition: 0.0, mu: [mu; 2], falling: None, reduction: None };
         Self { first, along: Vec::new() }
     }
 
@@ -246,6 +267,29 @@ impl FrictionField {
     #[must_use]
     pub fn at(&self, side: usize, s: f64, slip: [f64; 2]) -> f64 {
         if self.along.is_empty() { self.first.mu(side, slip) } else { self.searched(side, s, slip) }
+    }
+
+    /// Whether any stretch has reduction factors of its own.
+    #[inline]
+    #[must_use]
+    pub fn has_reductions(&self) -> bool {
+        self.along.iter().any(|piece| piece.reduction.is_some())
+    }
+
+    /// Polach's formula as it holds at `s` m along the track, `law` where nothing else is said.
+    #[must_use]
+    pub fn reduction(&self, s: f64, law: &Polach) -> Polach {
+        let of = |piece: &Piece| piece.reduction.map_or(*law, |r| Polach { k_a: r.k_a, k_s: r.k_s });
+        let passed = self.along.partition_point(|piece| piece.from <= s);
+        let Some(here) = passed.checked_sub(1).map(|i| &self.along[i]) else { return *law };
+        let gone = s - here.from;
+        if gone >= here.transition {
+            return of(here);
+        }
+        let (before, here, t) =
+            (if passed > 1 { of(&self.along[passed - 2]) } else { *law }, of(here), gone / here.transition);
+        let mix = |a: f64, b: f64| (1.0 - t) * a + t * b;
+        Polach { k_a: mix(before.k_a, here.k_a), k_s: mix(before.k_s, here.k_s) }
     }
 
     fn searched(&self, side: usize, s: f64, slip: [f64; 2]) -> f64 {

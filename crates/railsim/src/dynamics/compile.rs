@@ -11,8 +11,11 @@ use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
+use crate::equipment::train::Wagons;
+use crate::equipment::{Bogie, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::math::{Vec3, rotation};
+use crate::schema::drive::Drive;
 use crate::schema::run::SimpleContact;
 use crate::schema::track::TrackSupport;
 use crate::schema::{Case, Connection, Track, Vehicle};
@@ -69,7 +72,113 @@ pub fn model(case: &Case) -> Result<Model> {
     )?;
     model.guided = guided(vehicle);
     model.gaps = gaps(vehicle)?;
+    model.equipment = equipment(case, &model)?.map(Box::new);
     Ok(model)
+}
+
+/// Traction, brakes and train, where the run has a driver.
+fn equipment(case: &Case, model: &Model) -> Result<Option<Equipment>> {
+    let Some(drive) = &case.run.drive else { return Ok(None) };
+    let vehicle = &case.vehicle;
+    equipment_needed(case, drive)?;
+    let body = match &model.speed_hold {
+        Some(hold) => hold.body,
+        None => (0..model.bodies.len())
+            .max_by(|a, b| model.bodies[*a].mass.total_cmp(&model.bodies[*b].mass))
+            .ok_or_else(|| Error::input(Fault::new(KeyPath::of("vehicle.body"), "none", "a car body")))?,
+    };
+    let point = vehicle
+        .outline
+        .as_ref()
+        .map_or(Vec3::zeros(), |o| Vec3::new(-0.5 * o.length_over_couplers, 0.0, -o.coupler_height));
+    let coupler = (body, point - model.bodies[body].position);
+    let parking = vehicle.parking_brake.as_ref().map(|brake| {
+        let on = vehicle.wheelsets.iter().map(|w| brake.wheelsets.contains(&w.name)).collect();
+        (brake.clone(), on)
+    });
+    Ok(Some(Equipment {
+        drive: drive.clone(),
+        bogies: bogies(model)?,
+        traction: vehicle.traction.clone(),
+        dynamic_brake: vehicle.dynamic_brake,
+        air_brake: vehicle.air_brake.clone(),
+        parking,
+        train: case.run.train.clone().map(|written| Wagons { written, gravity: case.run.gravity }),
+        coupler,
+    }))
+}
+
+/// What the driver asks for must be there.
+fn equipment_needed(case: &Case, drive: &Drive) -> Result<()> {
+    let vehicle = &case.vehicle;
+    let at = KeyPath::of("run.drive");
+    let needs = [
+        ("notch", !drive.notch.is_idle(), vehicle.traction.is_some(), "traction"),
+        ("dynamic_brake", !drive.dynamic_brake.is_idle(), vehicle.dynamic_brake.is_some(), "dynamic_brake"),
+        ("dynamic_brake", !drive.dynamic_brake.is_idle(), vehicle.traction.is_some(), "traction"),
+        (
+            "brake_pipe_reduction",
+            !drive.brake_pipe_reduction.is_idle(),
+            vehicle.air_brake.is_some(),
+            "air_brake",
+        ),
+        ("independent_brake", !drive.independent_brake.is_idle(), vehicle.air_brake.is_some(), "air_brake"),
+        ("emergency", drive.emergency.is_some(), vehicle.air_brake.is_some(), "air_brake"),
+        ("blending", drive.blending, vehicle.air_brake.is_some(), "air_brake"),
+        ("parking_brake", drive.parking_brake, vehicle.parking_brake.is_some(), "parking_brake"),
+    ];
+    let mut faults: Vec<Fault> = needs
+        .into_iter()
+        .filter(|(_, asked, there, _)| *asked && !there)
+        .map(|(key, _, _, table)| {
+            Fault::new(at.key(key), format!("it with a vehicle without [{table}]"), "nothing of that vehicle")
+        })
+        .collect();
+    if let Some(traction) = &vehicle.traction {
+        let most = f64::from(traction.notches);
+        for [_, notch] in drive.notch.steps() {
+            if notch > most {
+                faults.push(Fault::new(at.key("notch"), notch.to_string(), format!("0 to {most}")));
+            }
+        }
+    }
+    let wheelsets = vehicle.wheelsets.len();
+    if !drive.observer.diameter_error.is_empty() && drive.observer.diameter_error.len() != wheelsets {
+        faults.push(Fault::new(
+            at.key("observer").key("diameter_error"),
+            format!("{} numbers", drive.observer.diameter_error.len()),
+            format!("one for each of the {wheelsets} wheelsets"),
+        ));
+    }
+    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
+}
+
+/// Bogies: wheelsets by the body that most of their connections go to.
+fn bogies(model: &Model) -> Result<Vec<Bogie>> {
+    let first = model.bodies.len();
+    let mut bogies: Vec<Bogie> = Vec::new();
+    for w in 0..model.wheelsets.len() {
+        let mut count = vec![0_usize; first];
+        for link in &model.links {
+            let ends = [link.a, link.b];
+            if ends.contains(&(first + w)) {
+                ends.into_iter().filter(|end| *end < first).for_each(|end| count[end] += 1);
+            }
+        }
+        let body =
+            (0..first).max_by_key(|b| (count[*b], first - b)).filter(|b| count[*b] > 0).ok_or_else(|| {
+                Error::input(Fault::new(
+                    KeyPath::of("vehicle.connection"),
+                    format!("none between {} and a body", model.wheelsets[w].body.name),
+                    "one, so that a motor's or a block's torque has something to react on",
+                ))
+            })?;
+        match bogies.iter_mut().find(|b| b.body == body) {
+            Some(bogie) => bogie.wheelsets.push(w),
+            None => bogies.push(Bogie { body, name: model.bodies[body].name.clone(), wheelsets: vec![w] }),
+        }
+    }
+    Ok(bogies)
 }
 
 fn gaps(vehicle: &Vehicle) -> Result<Vec<Gap>> {

@@ -10,6 +10,7 @@ use crate::contact::friction::FrictionField;
 use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
+use crate::equipment::Equipment;
 use crate::error::Result;
 use crate::integrator::StiffBlock;
 use crate::math::{Mat3, Vec3};
@@ -197,6 +198,8 @@ pub struct Model {
     pub gravity: f64,
     /// Bodies that move along the design track at the speed asked for, whatever acts on them.
     pub guided: Vec<usize>,
+    /// Traction, brakes and train of a run that has any.
+    pub equipment: Option<Box<Equipment>>,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
     memory: usize,
 }
@@ -246,6 +249,7 @@ impl Model {
             contact,
             gravity,
             guided: Vec::new(),
+            equipment: None,
             stiff_blocks,
             memory: map.memory,
         })

@@ -3,7 +3,7 @@
 use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, steady_speeds, wheelset};
 use crate::connection::lanes::BushingBlock;
 use crate::connection::{Law, Pair, Pose, Relative};
-use crate::contact::creep::{CreepCase, Creepage, Patch};
+use crate::contact::creep::{CreepCase, CreepLaw, Creepage, Patch};
 use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
 use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::contact::normal::hunt_crossley;
@@ -12,6 +12,7 @@ use crate::dynamics::model::{Contact, Link, Model};
 use crate::dynamics::scratch::{ContactForce, LeftRail, Scratch, Wheel};
 use crate::dynamics::state::StateMap;
 use crate::dynamics::stiff;
+use crate::equipment::Acting;
 use crate::integrator::{StiffBlock, System};
 use crate::math::Vec3;
 use crate::math::cube_root::cube_root;
@@ -52,6 +53,10 @@ pub struct VehicleSystem<'m> {
     pub irregular: bool,
     /// False at standstill: contacts stick and creep forces are left out.
     pub creeping: bool,
+    /// Whether the speed hold acts, where there is one.
+    pub holding: bool,
+    /// Traction, brakes and train at work, with their own numbers at the end of the state.
+    pub acting: Option<Box<Acting<'m>>>,
     map: StateMap,
     level: bool,
     joints: Joints,
@@ -110,6 +115,8 @@ impl<'m> VehicleSystem<'m> {
             program,
             irregular: true,
             creeping: true,
+            holding: true,
+            acting: None,
             map: model.map(),
             level: model.layout.is_tangent(),
             joints: Joints::new(&model.links),
@@ -150,7 +157,7 @@ impl<'m> VehicleSystem<'m> {
         for w in 0..self.model.wheelsets.len() {
             self.place_wheels(w, x);
         }
-        self.creep_stage();
+        self.creep_stage(x);
         for w in 0..self.model.wheelsets.len() {
             self.add_wheel_forces(w);
         }
@@ -189,8 +196,11 @@ impl<'m> VehicleSystem<'m> {
     }
 
     #[inline(always)]
-    fn creep_stage(&mut self) {
-        let Contact::Profiles { law, .. } = &self.model.contact else { return };
+    fn creep_stage(&mut self, x: &[f64]) {
+        let Contact::Profiles { law, friction, .. } = &self.model.contact else { return };
+        if self.acting.is_some() {
+            self.stick_stage(x);
+        }
         let scratch = &mut self.scratch;
         let forces = &mut scratch.creep_forces[..scratch.creep_cases.len()];
         law.forces(&scratch.creep_cases, forces);
@@ -201,6 +211,62 @@ impl<'m> VehicleSystem<'m> {
             if let Some(force) = answers.next() {
                 contact.creep = [force.fx, force.fy];
             }
+        }
+        if friction.has_reductions() {
+            self.reduced_stage(x);
+        }
+    }
+
+    /// Creepages at and near standstill, and sand, put into what the creep-force law is asked.
+    #[inline(never)]
+    fn stick_stage(&mut self, x: &[f64]) {
+        let (Some(acting), scratch) = (&mut self.acting, &mut self.scratch) else { return };
+        acting.rolls(scratch, self.model.bodies.len());
+        let mut cases = scratch.creep_cases.iter_mut();
+        for (w, wheels) in scratch.wheels.iter_mut().enumerate() {
+            for (side, wheel) in wheels.iter_mut().enumerate() {
+                let mut first = true;
+                for contact in wheel.contacts_mut().iter_mut().filter(|c| c.creeps) {
+                    let Some(case) = cases.next() else { return };
+                    case.mu *= acting.sand();
+                    if first {
+                        let steady = [case.creepage.xi, case.creepage.eta];
+                        let known = Some((contact.placed.slip, steady, case.patch.a));
+                        let given = acting.creepage(self.model, self.map, (w, side), known, x);
+                        [case.creepage.xi, case.creepage.eta] = given;
+                        contact.placed.creepage = case.creepage;
+                        first = false;
+                    }
+                }
+                if first {
+                    acting.creepage(self.model, self.map, (w, side), None, x);
+                }
+            }
+        }
+    }
+
+    /// Creep forces again where a stretch of track has reduction factors of its own.
+    #[inline(never)]
+    fn reduced_stage(&mut self, x: &[f64]) {
+        let Contact::Profiles { law: CreepLaw::Polach(law), friction, .. } = &self.model.contact else {
+            return;
+        };
+        let mut cases = self.scratch.creep_cases.iter();
+        for (w, wheels) in self.scratch.wheels.iter_mut().enumerate() {
+            let s = x[self.map.q(self.map.bodies + w).start];
+            let own = friction.reduction(s, law);
+            for contact in wheels.iter_mut().flat_map(Wheel::contacts_mut).filter(|c| c.creeps) {
+                let Some(case) = cases.next() else { return };
+                let force = own.force(&case.patch, &case.creepage, case.mu);
+                contact.creep = [force.fx, force.fy];
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn acting_stage(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        if let Some(acting) = &mut self.acting {
+            acting.act(self.model, self.map, t, x, dx, &mut self.scratch);
         }
     }
 
@@ -263,11 +329,18 @@ impl<'m> VehicleSystem<'m> {
 
     #[inline(always)]
     fn speed_hold_stage(&mut self, t: f64, x: &[f64]) {
-        if let Some(hold) = &self.model.speed_hold {
+        if let Some(hold) = &self.model.speed_hold
+            && self.holding
+        {
             let (s, v) = self.program.at(t);
             let k = &self.scratch.kinematics[hold.body];
             let force = hold.stiffness * (s - x[self.map.q(hold.body)][0]) + hold.damping * (v - k.s_dot);
-            self.scratch.wrench[hold.body].f += k.frame.R_IT.column(0) * force;
+            let pull = k.frame.R_IT.column(0) * force;
+            // What a driven vehicle pulls against hangs on its coupler.
+            if let Some(acting) = &self.acting {
+                self.scratch.wrench[hold.body].m += (k.pose.R * acting.coupler()).cross(&pull);
+            }
+            self.scratch.wrench[hold.body].f += pull;
         }
     }
 
@@ -434,7 +507,7 @@ pub(crate) fn total_force(c: &ContactForce) -> Vec3 {
 
 impl System for VehicleSystem<'_> {
     fn size(&self) -> usize {
-        self.map.size()
+        self.map.size() + self.acting.as_ref().map_or(0, |acting| acting.states())
     }
 
     fn rhs(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
@@ -446,7 +519,8 @@ impl System for VehicleSystem<'_> {
     }
 
     fn stiff_matrices(&mut self, block: usize, k: &mut [f64], c: &mut [f64]) {
-        stiff::matrices(self.model, &self.scratch, block, k, c);
+        let sticking = self.acting.as_ref().map_or(0.0, |acting| acting.sticking(block));
+        stiff::matrices(self.model, &self.scratch, block, sticking, k, c);
     }
 
     fn reject(&mut self) {
@@ -487,6 +561,9 @@ impl VehicleSystem<'_> {
         self.contact_stage(x);
         self.connection_stage(x, dx);
         self.speed_hold_stage(t, x);
+        if self.acting.is_some() {
+            self.acting_stage(t, x, dx);
+        }
         self.acceleration_stage(x, dx);
     }
 }

@@ -5,9 +5,11 @@
 use crate::contact::creepage::PlacedContact;
 use crate::dynamics::model::{Contact, Model};
 use crate::dynamics::rhs::{LEAST_ROLLING_SPEED, patch};
-use crate::dynamics::scratch::{ContactForce, Scratch, Wheel};
+use crate::dynamics::scratch::{ContactForce, Scratch};
 use crate::dynamics::state::PAIR;
+use crate::equipment::CONTACT_DAMPING;
 use crate::math::Vec3;
+use crate::math::cube_root::cube_root;
 
 /// Relative speed along `e` of wheel against rail per unit of each of the pair's nine speeds.
 pub(crate) fn direction(placed: &PlacedContact, e: &Vec3) -> [f64; PAIR] {
@@ -58,12 +60,19 @@ fn creep_slope(contact: &Contact, force: &ContactForce, speed: f64) -> [f64; 2] 
     }
 }
 
+/// Half the length of a contact's patch, m.
+fn half_length(force: &ContactForce) -> f64 {
+    force.geometry.map_or(1.0, |point| (point.a1 * cube_root(force.normal)).max(1e-6))
+}
+
 /// Fills `k` and `c` (9 x 9, row-major): `d(speeds)/dt ~ -k positions - c speeds` for wheelset `w` and its track.
-pub fn matrices(model: &Model, scratch: &Scratch, w: usize, k: &mut [f64], c: &mut [f64]) {
+/// `sticking` is the share of the deflection in the creepage of a wheel's first contact, 0 in a run without a driver.
+pub fn matrices(model: &Model, scratch: &Scratch, w: usize, sticking: f64, k: &mut [f64], c: &mut [f64]) {
     k.fill(0.0);
     c.fill(0.0);
     let speed = scratch.kinematics[model.bodies.len() + w].v_T.x.abs().max(LEAST_ROLLING_SPEED);
-    for contact in scratch.wheels[w].iter().flat_map(Wheel::contacts) {
+    let contacts = scratch.wheels[w].iter().flat_map(|wheel| wheel.contacts().iter().enumerate());
+    for (i, contact) in contacts {
         let n = direction(&contact.placed, &contact.placed.e_n);
         let t = direction(&contact.placed, &contact.placed.e_t);
         let x = direction(&contact.placed, &Vec3::x());
@@ -74,8 +83,16 @@ pub fn matrices(model: &Model, scratch: &Scratch, w: usize, k: &mut [f64], c: &m
         add_outer(k, contact.normal_slope[0], &n, &n_q);
         add_outer(c, contact.normal_slope[1], &n, &n);
         let slope = creep_slope(&model.contact, contact, speed);
-        add_outer(c, slope[0], &x, &x);
-        add_outer(c, slope[1], &t, &t);
+        for (slope, e) in slope.into_iter().zip([&x, &t]) {
+            if sticking > 0.0 && i == 0 {
+                // At rest a spring: the slope over creepage becomes one over the deflection of half a patch.
+                let spring = sticking * slope * speed / half_length(contact);
+                add_outer(k, spring, e, e);
+                add_outer(c, (1.0 - sticking) * slope + CONTACT_DAMPING * spring, e, e);
+            } else {
+                add_outer(c, slope, e, e);
+            }
+        }
     }
     let body = &model.wheelsets[w].body;
     let mut mass = [0.0; PAIR];

@@ -2,6 +2,7 @@
 
 use crate::body::coordinate;
 use crate::dynamics::{Contact, Model};
+use crate::equipment::Quantity;
 use crate::error::Result;
 use crate::schema::Case;
 
@@ -17,15 +18,18 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 55] = [
+const PARTS: [(&str, &str, &str); 67] = [
+    ("Fx", "N", "longitudinal creep force on the wheel, + forward"),
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force of the flange contact"),
     ("N_tread", "N", "normal force of the tread contact"),
     ("Q", "N", "vertical wheel force, + presses on the rail"),
     ("Y", "N", "lateral wheel force on the rail, + outward"),
+    ("adhesion", "1", "longitudinal creep force over the load of the same wheels, + forward"),
     ("ax", "m/s2", "acceleration along the body's x axis, without gravity"),
     ("ay", "m/s2", "acceleration along the body's y axis (right), without gravity"),
     ("az", "m/s2", "acceleration along the body's z axis (down), without gravity"),
+    ("block_force", "N", "force of all brake blocks of a wheelset by the air brake"),
     ("branch", "1", "number of the root locus that a mode belongs to"),
     ("cant", "rad", "cant under the vehicle's centre, + right rail lower"),
     ("clearance", "m", "what is left between the two points of a gap, negative where they have met"),
@@ -36,8 +40,11 @@ const PARTS: [(&str, &str, &str); 55] = [
     ("critical_speed_up", "m/s", "speed at which it begins to hunt when it is stepped up"),
     ("cross_level", "m", "irregularity: height of the left rail above the right over 1.5 m"),
     ("curvature", "1/m", "curvature under the vehicle's centre, + to the right"),
+    ("cylinder", "Pa", "pressure in the brake cylinders, gauge"),
     ("damping_ratio", "1", "share of critical damping, negative where the motion grows"),
     ("direction", "1", "-1 while the speed is stepped down, +1 up"),
+    ("drawbar", "N", "force in a coupling, + pull"),
+    ("effort", "N", "force at the rims by motors or blocks, + forward"),
     ("flange_angle", "rad", "steepest angle of the wheel profile's flange face against the axle"),
     ("force_x", "N", "load on the body, + forward"),
     ("force_y", "N", "load on the body, + right"),
@@ -49,13 +56,21 @@ const PARTS: [(&str, &str, &str); 55] = [
     ("lateral", "m", "irregularity: lateral deviation of the centre line, + right"),
     ("mode", "1", "number of the mode at its speed, by frequency"),
     ("natural_frequency", "Hz", "size of the eigenvalue over 2 pi"),
+    ("notch", "1", "notch of the traction controller"),
     ("phi", "rad", "roll against the track frame"),
+    ("pipe", "Pa", "pressure in the brake pipe, gauge"),
     ("psi", "rad", "yaw against the track frame, + nose right"),
     ("reaction", "N", "force that holds the displaced coordinate where it is"),
     ("reaction_moment", "N m", "moment that holds the displaced coordinate where it is"),
     ("real", "1/s", "real part of the eigenvalue, positive where the motion grows"),
+    ("reservoir", "Pa", "pressure in the auxiliary reservoir, gauge"),
     ("s", "m", "place of the vehicle along the track"),
     ("shift", "m", "outward lateral shift of the wheel on its rail"),
+    (
+        "slip",
+        "1",
+        "slip of the axle: rim speed at the nominal radius less the vehicle's, over it (over 1 m/s at least)",
+    ),
     ("speed_hold", "N", "force of the speed controller, + forward"),
     ("spin", "1/m", "spin creepage of the main contact"),
     ("step", "1", "load step"),
@@ -63,7 +78,9 @@ const PARTS: [(&str, &str, &str); 55] = [
     ("sum_Y", "N", "track-shifting force of the axle, Y right minus Y left, + right"),
     ("swing", "m", "lateral motion of the axle, peak to peak within the window"),
     ("t", "s", "time"),
+    ("temperature", "1", "temperature rise of the motors over what their continuous rating gives"),
     ("theta", "rad", "pitch against the track frame, + nose up"),
+    ("torque", "N m", "motor torque on the axle, + forward"),
     ("track_phi", "rad", "roll of the track mass"),
     ("track_y", "m", "lateral displacement of the track mass, + right"),
     ("track_z", "m", "vertical displacement of the track mass, + down"),
@@ -102,6 +119,7 @@ pub(crate) enum Source {
     Wheel(usize, usize, WheelQuantity),
     SumLV(usize),
     SumY(usize),
+    Equipment(Quantity),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -126,7 +144,7 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
         ("s".to_owned(), Source::Place),
         ("v".to_owned(), Source::Speed),
     ];
-    if model.speed_hold.is_some() {
+    if model.speed_hold.is_some() && model.equipment.as_ref().is_none_or(|e| e.drive.hold_speed) {
         plan.push(("speed_hold".to_owned(), Source::HoldForce));
     }
     let motions = [
@@ -186,6 +204,10 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
                 plan.push((format!("{name}.{label}.{part}"), Source::Wheel(w, side, *quantity)));
             }
         }
+    }
+    if let Some(equipment) = &model.equipment {
+        let own = equipment.plan(model).into_iter();
+        plan.extend(own.map(|(name, quantity)| (name, Source::Equipment(quantity))));
     }
     plan
 }

@@ -2,9 +2,11 @@
 
 pub mod channel;
 pub mod divergence;
+pub mod law;
 pub mod recorder;
 pub mod stability;
 pub mod time_stepping;
 
 pub use channel::{Channel, channels};
-pub use time_stepping::{Control, Ended, Free, Outcome, simulate};
+pub use law::{Action, Law, Outside};
+pub use time_stepping::{Control, Ended, Free, Outcome, simulate, simulate_controlled};

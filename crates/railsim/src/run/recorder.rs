@@ -38,7 +38,14 @@ impl Recorder {
     }
 }
 
-fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &[f64], dx: &[f64]) -> f64 {
+pub(crate) fn value(
+    source: Source,
+    system: &VehicleSystem<'_>,
+    map: StateMap,
+    t: f64,
+    x: &[f64],
+    dx: &[f64],
+) -> f64 {
     let (model, scratch) = (system.model, &system.scratch);
     let reference = model.reference();
     match source {
@@ -89,6 +96,9 @@ fn value(source: Source, system: &VehicleSystem<'_>, map: StateMap, t: f64, x: &
         Source::SumY(w) => {
             let [left, right] = &scratch.wheels[w];
             right.Y - left.Y
+        }
+        Source::Equipment(quantity) => {
+            system.acting.as_ref().map_or(f64::NAN, |acting| acting.value(quantity, model, t, x, scratch))
         }
     }
 }

@@ -1,11 +1,14 @@
 //! A case in time: rolling equilibrium, fixed steps to the end of the track, one row per output step.
 
 use crate::dynamics::{Model, SpeedProgram, VehicleSystem, compile, coordinate, equilibrium};
+use crate::equipment::{Acting, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
-use crate::integrator::{Stepper, System};
+use crate::integrator::{Integrator, Stepper, System};
+use crate::run::law::{Outside, Watching};
 use crate::run::recorder::Recorder;
 use crate::run::{divergence, stability};
 use crate::schema::Case;
+use crate::schema::drive::Until;
 
 /// Room that is taken for rows before the run, at most; more is taken as it is needed.
 const MOST_ROWS_AT_ONCE: usize = 1 << 18;
@@ -65,6 +68,22 @@ pub struct Outcome {
 /// Bad input, no equilibrium, a step beyond the scheme's stability limit, an interruption. A run that diverges on the way
 /// is an [`Outcome`] that says so.
 pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
+    run(case, control, None)
+}
+
+/// The same with a control law of the user's at every sample of `run.drive.period`, after the vehicle's own controllers.
+///
+/// # Errors
+/// As [`simulate`]; a case without `run.drive`, a channel that there is not, a law that fails or answers with no number.
+pub fn simulate_controlled(case: &Case, control: &dyn Control, outside: &mut Outside<'_>) -> Result<Outcome> {
+    if case.run.drive.is_none() {
+        let allowed = "a table, an empty one at least: a control law drives";
+        return Err(Error::input(Fault::new(KeyPath::of("run.drive"), "nothing", allowed)));
+    }
+    run(case, control, Some(outside))
+}
+
+fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) -> Result<Outcome> {
     let model = compile::model(case)?;
     let integrator = &case.run.integrator;
     let h = integrator.step();
@@ -93,10 +112,28 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     system.scratch.left_rail = None;
 
     let distance = case.track.length - case.run.start;
-    let rows = ((distance / speed / (h * every as f64)) as usize).min(MOST_ROWS_AT_ONCE) + 8;
+    let latest = latest(case, distance);
+    let mut samples = u64::MAX;
+    if let Some(equipment) = &model.equipment {
+        samples = (equipment.drive.period / h).round().max(1.0) as u64;
+        attach(&mut system, equipment, integrator, &mut x)?;
+        dx.resize(x.len(), 0.0);
+    }
+    let mut watching = match outside {
+        Some(outside) => Some(Watching::new(outside, &system)?),
+        None => None,
+    };
+    if let Some(watching) = &mut watching {
+        watching.sample(&mut system, 0.0, &x)?;
+    }
+    if model.equipment.is_some() {
+        system.rhs(0.0, &x, &mut dx);
+    }
+    let expected = latest.min(distance / speed.max(0.1));
+    let rows = ((expected / (h * every as f64)) as usize).min(MOST_ROWS_AT_ONCE) + 8;
     let mut recorder = Recorder::new(&model, rows);
     recorder.record(&system, 0.0, &x, &dx);
-    let mut stepper = Stepper::new(integrator, map.size(), system.stiff_blocks());
+    let mut stepper = Stepper::new(integrator, x.len(), system.stiff_blocks());
     let leading = (0..map.wheelsets).map(|w| map.q(map.bodies + w).start).collect::<Vec<_>>();
     let reference = map.q(model.reference()).start;
 
@@ -104,6 +141,9 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let mut output: u64 = 0;
     let ended = 'run: loop {
         for n in 0..every {
+            if n > 0 {
+                sample(&mut system, &mut watching, step, samples, h, &x)?;
+            }
             // The slope that the last row was written from is the first of the step that follows.
             let known = (n == 0).then_some(&dx[..]);
             let end = stepper.step_from(&mut system, step as f64 * h, &mut x, h, known);
@@ -115,6 +155,7 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             }
         }
         let t = step as f64 * h;
+        sample(&mut system, &mut watching, step, samples, h, &x)?;
         system.rhs(t, &x, &mut dx);
         recorder.record(&system, t, &x, &dx);
         output += 1;
@@ -123,13 +164,17 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
             control.progress(t, s, 1.0);
             break Ended::EndOfTrack;
         }
-        if t > LATEST * distance / speed {
+        if model.equipment.as_ref().is_some_and(|e| reached(&e.drive.until, t, dx[reference])) {
+            control.progress(t, s, 1.0);
+            break Ended::Complete;
+        }
+        if t > latest {
             break Ended::Diverged(Error::Diverged {
                 t,
                 s,
                 body: model.rigid(model.reference()).name.clone(),
                 cause: format!(
-                    "not at the end of the track in {LATEST} times the time that the speed asked for takes: nothing holds it"
+                    "not at the end of the track in {latest:.1} s, {LATEST} times what the speed asked for takes: nothing holds it"
                 ),
             });
         }
@@ -153,6 +198,82 @@ pub fn simulate(case: &Case, control: &dyn Control) -> Result<Outcome> {
         "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,
     });
     Ok(Outcome { columns: recorder.into_columns(), labels: Vec::new(), ended, statistics })
+}
+
+/// Time after which a run has failed, s.
+fn latest(case: &Case, distance: f64) -> f64 {
+    let take = distance / case.run.speed.max(0.1);
+    match case.run.drive.as_ref().map(|drive| drive.until.time) {
+        None => LATEST * take,
+        // The end that was asked for comes first.
+        Some(Some(time)) => time + case.run.output_step,
+        Some(None) => SLOWEST * take,
+    }
+}
+
+/// A driven run may be slower than the speed that it began with, but not by more than this.
+const SLOWEST: f64 = 20.0;
+
+/// Lets the equipment act, with its numbers at the end of the state.
+fn attach<'m>(
+    system: &mut VehicleSystem<'m>,
+    equipment: &'m Equipment,
+    integrator: &Integrator,
+    x: &mut Vec<f64>,
+) -> Result<()> {
+    let model = system.model;
+    if let Some(train) = &equipment.train
+        && integrator.step() * train.fastest() > 1.0
+    {
+        return Err(Error::input(Fault::new(
+            KeyPath::of("run.integrator.step"),
+            format!(
+                "{} s, with a train whose couplings swing at {:.0} rad/s",
+                integrator.step(),
+                train.fastest()
+            ),
+            format!("at most {:.2e} s", 1.0 / train.fastest()),
+        )));
+    }
+    system.holding = equipment.drive.hold_speed;
+    system.creeping = true;
+    let mut acting = Box::new(Acting::new(model, equipment));
+    x.resize(model.map().size() + acting.states(), 0.0);
+    acting.release(model, x);
+    acting.place_train(model, x);
+    acting.sample(model, 0.0, x);
+    system.acting = Some(acting);
+    Ok(())
+}
+
+/// Lets the controllers look, every `samples` steps.
+#[inline]
+fn sample(
+    system: &mut VehicleSystem<'_>,
+    watching: &mut Option<Watching<'_, '_>>,
+    step: u64,
+    samples: u64,
+    h: f64,
+    x: &[f64],
+) -> Result<()> {
+    if !step.is_multiple_of(samples) {
+        return Ok(());
+    }
+    let t = step as f64 * h;
+    if let Some(acting) = &mut system.acting {
+        acting.sample(system.model, t, x);
+    }
+    match watching {
+        Some(watching) => watching.sample(system, t, x),
+        None => Ok(()),
+    }
+}
+
+/// Whether the end that was asked for has come, at the vehicle's speed `v`.
+fn reached(until: &Until, t: f64, v: f64) -> bool {
+    until.time.is_some_and(|end| t >= end - 1e-9)
+        || until.speed_below.is_some_and(|end| v <= end)
+        || until.speed_above.is_some_and(|end| v >= end)
 }
 
 /// Most irregularity (m) under a wheel at the start: a tenth of what the contact is pressed in by the wheel's load.

@@ -127,6 +127,24 @@ impl<'a> Builder<'a> {
         if let Some(hold) = &written.speed_hold {
             self.body(&hold.body, self.root.at.key("speed_hold").key("body"), &names);
         }
+        if let Some(traction) = &written.traction {
+            let found = traction.faults(&self.root.at.key("traction"));
+            self.faults.extend(found);
+        }
+        if let Some(air) = &written.air_brake {
+            let key = self.root.at.key("air_brake").key("block_friction");
+            self.rising(&air.block_friction, "m/s", &key);
+        }
+        if let Some(parking) = &written.parking_brake {
+            let sets: Vec<&str> = wheelsets.iter().map(|w| w.name.as_str()).collect();
+            for (i, set) in parking.wheelsets.iter().enumerate() {
+                if !sets.contains(&set.as_str()) {
+                    let at = self.root.at.key("parking_brake").key("wheelsets").index(i);
+                    let allowed = format!("a wheelset: {}", sets.join(", "));
+                    self.fault(unknown(at, quoted(set), allowed, set, sets.iter().copied()));
+                }
+            }
+        }
         (self.faults.len() == before).then_some(Vehicle {
             name: written.name,
             title: written.title,
@@ -145,6 +163,8 @@ impl<'a> Builder<'a> {
             outline: written.outline,
             traction: written.traction,
             dynamic_brake: written.dynamic_brake,
+            air_brake: written.air_brake,
+            parking_brake: written.parking_brake,
             equipment: written.equipment,
             shapes: written.shape,
             load_cases: written.load_case,
@@ -216,6 +236,21 @@ impl<'a> Builder<'a> {
             ..right.clone()
         };
         vec![right, left]
+    }
+
+    /// Points of a curve: places that rise, values that are not negative.
+    fn rising(&mut self, points: &[[f64; 2]], unit: &str, at: &KeyPath) {
+        let mut before = f64::NEG_INFINITY;
+        for (i, [x, y]) in points.iter().enumerate() {
+            if !(x.is_finite() && *x >= 0.0 && *x > before) {
+                let allowed = format!("numbers >= 0 {unit}, each above the one before");
+                self.fault(Fault::new(at.index(i).index(0), format!("{x} {unit}"), allowed));
+            }
+            if !(y.is_finite() && *y >= 0.0) {
+                self.fault(Fault::new(at.index(i).index(1), y.to_string(), "a number >= 0"));
+            }
+            before = *x;
+        }
     }
 
     /// One gap, or the two of a mirrored one.

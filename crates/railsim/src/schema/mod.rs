@@ -8,6 +8,7 @@ mod build;
 mod case;
 mod check;
 mod document;
+pub mod drive;
 mod node;
 mod parameter;
 pub mod run;
@@ -24,6 +25,6 @@ pub use run::{Run, RunKind};
 pub use toml_source::{SyntaxError, line_of, syntax_error, toml_to_json};
 pub use track::{Support, Track};
 pub use vehicle::{
-    Axis, Body, Connection, ContactSettings, DynamicBrake, Equipment, Gap, Load, Outline, Sensor, Shape,
-    SpeedHold, Traction, Vehicle, Wheelset,
+    AirBrake, Axis, Body, Connection, ContactSettings, DynamicBrake, Equipment, Gap, Load, Outline,
+    ParkingBrake, Sensor, Shape, SpeedHold, Thermal, Traction, Vehicle, Wheelset,
 };

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::drive::{Drive, Train};
 use crate::contact::creep::CreepLaw;
 use crate::contact::friction::Friction;
 use crate::contact::textbook::Textbook;
@@ -24,6 +25,8 @@ pub enum RunKind {
     Modal,
     /// The speed above which the vehicle hunts.
     CriticalSpeed,
+    /// Pressures and block forces of the air brake by itself, nothing moving.
+    AirBrake,
     /// What looks wrong in the vehicle's description.
     Lint,
 }
@@ -38,6 +41,7 @@ impl RunKind {
             Self::QuasiStatic => "quasi_static",
             Self::Modal => "modal",
             Self::CriticalSpeed => "critical_speed",
+            Self::AirBrake => "air_brake",
             Self::Lint => "lint",
         }
     }
@@ -104,6 +108,12 @@ pub struct Run {
     /// `critical_speed`: how it is found.
     #[serde(default)]
     pub search: Option<Search>,
+    /// `time`, `air_brake`: what the driver asks of traction and brakes. With it no speed is held.
+    #[serde(default)]
+    pub drive: Option<Drive>,
+    /// `time`: what hangs behind the vehicle.
+    #[serde(default)]
+    pub train: Option<Train>,
 }
 
 fn no_integrator() -> Integrator {

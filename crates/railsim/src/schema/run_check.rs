@@ -1,12 +1,13 @@
 //! What holds between the keys of `run`: which of them a kind of run needs, which it has no use for.
 
 use super::check;
+use super::drive::Until;
 use super::node::Node;
 use super::run::{Load, Run, RunKind, Search};
 use crate::error::Fault;
 
 /// Keys that only some kinds of run have a use for, with those kinds.
-const OWNED: [(&str, &[RunKind]); 8] = [
+const OWNED: [(&str, &[RunKind]); 10] = [
     ("disturbance", &[RunKind::Time, RunKind::CriticalSpeed]),
     ("start", &[RunKind::Time]),
     ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
@@ -15,6 +16,8 @@ const OWNED: [(&str, &[RunKind]); 8] = [
     ("load", &[RunKind::QuasiStatic]),
     ("load_steps", &[RunKind::QuasiStatic]),
     ("search", &[RunKind::CriticalSpeed]),
+    ("drive", &[RunKind::Time, RunKind::AirBrake]),
+    ("train", &[RunKind::Time, RunKind::AirBrake]),
 ];
 
 /// Speeds that a search looks at, at most; more is a slip of the pen.
@@ -46,13 +49,14 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
             faults,
         );
         needs(node, "output_step", "a number > 0 s", faults);
-        if run.speed <= 0.0 {
-            at(node, "speed", "a number > 0 m/s", faults);
+        if run.speed <= 0.0 && run.drive.is_none() {
+            at(node, "speed", "a number > 0 m/s, or 0 with run.drive", faults);
         }
         if !run.hold.is_empty() {
             at(node, "hold", "nothing where time is stepped", faults);
         }
     }
+    drive(node, &run, faults);
     match run.kind {
         RunKind::QuasiStatic => loads(node, &run, faults),
         RunKind::CriticalSpeed => match &run.search {
@@ -65,6 +69,44 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
             ),
         },
         _ => {}
+    }
+}
+
+/// What holds between `drive`, `train` and the rest.
+fn drive(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
+    let Some(drive) = &run.drive else {
+        if run.train.is_some() {
+            at(node, "train", "this key beside run.drive", faults);
+        }
+        if run.kind == RunKind::AirBrake {
+            needs(node, "drive", "a table: what the brakes are asked for", faults);
+        }
+        return;
+    };
+    let Some(table) = node.get("drive") else { return };
+    faults.extend(drive.faults(&table.at));
+    if run.kind == RunKind::AirBrake {
+        needs(node, "output_step", "a number > 0 s", faults);
+        if drive.until.time.is_none() {
+            faults.push(Fault::new(
+                table.at.key("until").key("time"),
+                "nothing",
+                "the time that it takes, s",
+            ));
+        }
+        return;
+    }
+    if run.speed <= 0.0 && drive.until == Until::default() {
+        faults.push(Fault::new(
+            table.at.key("until"),
+            "nothing, from standstill",
+            "time or speed_above: nobody knows when the end of the track is reached",
+        ));
+    }
+    let ratio = drive.period / run.integrator.step();
+    if ratio.round() < 1.0 || (ratio - ratio.round()).abs() > 1e-9 * ratio {
+        let allowed = format!("a whole multiple of run.integrator.step = {} s", run.integrator.step());
+        faults.push(Fault::new(table.at.key("period"), format!("{} s", drive.period), allowed));
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::Value as Json;
 
 use super::document::{Document, finish};
 use crate::connection::Law;
-use crate::error::{KeyPath, Result};
+use crate::error::{Fault, KeyPath, Result};
 
 /// A vehicle in one operating condition. Positions are in vehicle axes: origin at the vehicle's centre at top of rail,
 /// x forward, y right, z down (heights are negative), m.
@@ -48,6 +48,10 @@ pub struct Vehicle {
     pub traction: Option<Traction>,
     /// Dynamic brake.
     pub dynamic_brake: Option<DynamicBrake>,
+    /// Air brake.
+    pub air_brake: Option<AirBrake>,
+    /// Parking brake.
+    pub parking_brake: Option<ParkingBrake>,
     /// What stands on or hangs under the bodies, for drawings.
     pub equipment: Vec<Equipment>,
     /// Shapes of the bodies, for drawings and outlines.
@@ -298,7 +302,7 @@ pub struct Load {
 }
 
 /// Traction equipment, one inverter for each bogie.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
     /// Starting effort of the vehicle, N.
@@ -325,6 +329,138 @@ pub struct Traction {
     /// First-order lag of inverter and motor, s.
     #[schemars(extend("minimum" = 0, "unit" = "s"))]
     pub lag: f64,
+    /// Effort (N) over speed (m/s) of each notch, first to last, instead of `max_effort` and `power_at_rail`: points `[speed,
+    /// effort]`, straight between them, level beyond.
+    #[serde(default)]
+    pub notch_curves: Vec<Vec<[f64; 2]>>,
+    /// Rating of the motors; without it thermal tests cannot be assessed.
+    #[serde(default)]
+    pub thermal: Option<Thermal>,
+}
+
+/// Thermal rating of the traction motors, as efforts of the whole vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thermal {
+    /// Effort that may be held for ever, N.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "N"))]
+    pub continuous_effort: f64,
+    /// Effort that may be held for the short time, from cold, N.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "N"))]
+    pub short_time_effort: f64,
+    /// The short time, s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "s"))]
+    pub short_time: f64,
+}
+
+impl Traction {
+    /// What a schema cannot say.
+    #[must_use]
+    pub fn faults(&self, at: &KeyPath) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        if !self.notch_curves.is_empty() && self.notch_curves.len() != self.notches as usize {
+            let found = format!("{} curves", self.notch_curves.len());
+            let allowed = format!("one for each of the {} notches, or none", self.notches);
+            faults.push(Fault::new(at.key("notch_curves"), found, allowed));
+        }
+        for (i, curve) in self.notch_curves.iter().enumerate() {
+            let key = at.key("notch_curves").index(i);
+            if curve.len() < 2 {
+                faults.push(Fault::new(key.clone(), format!("{} points", curve.len()), "2 points or more"));
+            }
+            let mut before = f64::NEG_INFINITY;
+            for (k, [speed, effort]) in curve.iter().enumerate() {
+                if !(speed.is_finite() && *speed >= 0.0 && *speed > before) {
+                    let allowed = "speeds >= 0 m/s, each above the one before";
+                    faults.push(Fault::new(key.index(k).index(0), format!("{speed} m/s"), allowed));
+                }
+                if !(effort.is_finite() && *effort >= 0.0) {
+                    faults.push(Fault::new(key.index(k).index(1), format!("{effort} N"), "an effort >= 0 N"));
+                }
+                before = *speed;
+            }
+        }
+        if let Some(thermal) = &self.thermal
+            && thermal.short_time_effort <= thermal.continuous_effort
+        {
+            let allowed = format!("above continuous_effort = {} N", thermal.continuous_effort);
+            let found = format!("{} N", thermal.short_time_effort);
+            faults.push(Fault::new(at.key("thermal").key("short_time_effort"), found, allowed));
+        }
+        faults
+    }
+}
+
+/// Air brake of the vehicle: pipe, distributor, cylinders, rigging, blocks on every wheelset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AirBrake {
+    /// Pressure of the charged brake pipe and auxiliary reservoir, Pa (gauge).
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "Pa"))]
+    pub pipe_pressure: f64,
+    /// Rate at which the driver's valve lowers the pipe in service, Pa/s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "Pa/s"))]
+    pub service_rate: f64,
+    /// Rate in an emergency, Pa/s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "Pa/s"))]
+    pub emergency_rate: f64,
+    /// Rate at which the pipe is charged again, Pa/s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "Pa/s"))]
+    pub release_rate: f64,
+    /// Speed at which a change runs along the pipe, m/s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m/s"))]
+    pub propagation: f64,
+    /// Cylinder pressure over the reduction of the pipe.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub distributor_ratio: f64,
+    /// Reduction below which the distributor does nothing, Pa.
+    #[schemars(extend("minimum" = 0, "unit" = "Pa"))]
+    pub insensitivity: f64,
+    /// Largest cylinder pressure of the automatic brake, Pa.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "Pa"))]
+    pub max_cylinder: f64,
+    /// Largest cylinder pressure of the independent brake, Pa.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "Pa"))]
+    pub max_independent: f64,
+    /// Volume of the auxiliary reservoir over that of the full cylinders.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub reservoir_ratio: f64,
+    /// Time from 0 to 95 % of the cylinder pressure asked for, s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "s"))]
+    pub apply_time: f64,
+    /// Time from there to 5 % of it, s.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "s"))]
+    pub release_time: f64,
+    /// Piston area for each wheelset, m2.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m2"))]
+    pub piston_area: f64,
+    /// Ratio of the rigging, all blocks of a wheelset over the piston.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub rigging_ratio: f64,
+    /// Efficiency of the rigging.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub rigging_efficiency: f64,
+    /// Force of the return springs at the piston, N.
+    #[schemars(extend("minimum" = 0, "unit" = "N"))]
+    pub return_force: f64,
+    /// Coefficient of friction of the blocks over speed: points `[m/s, 1]`.
+    #[schemars(length(min = 1))]
+    pub block_friction: Vec<[f64; 2]>,
+}
+
+/// Parking brake: spring or screw on the blocks of some wheelsets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParkingBrake {
+    /// Force of all blocks of a wheelset, N.
+    #[schemars(extend("minimum" = 0, "unit" = "N"))]
+    pub block_force: f64,
+    /// Static coefficient of friction of the blocks.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1.5))]
+    pub block_friction: f64,
+    /// The wheelsets that it acts on.
+    #[schemars(length(min = 1))]
+    pub wheelsets: Vec<String>,
 }
 
 /// Dynamic brake.

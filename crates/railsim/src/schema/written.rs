@@ -6,7 +6,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde_json::Value as Json;
 
-use super::vehicle::{ContactSettings, DynamicBrake, Equipment, Load, Outline, Shape, SpeedHold, Traction};
+use super::vehicle::{
+    AirBrake, ContactSettings, DynamicBrake, Equipment, Load, Outline, ParkingBrake, Shape, SpeedHold,
+    Traction,
+};
 use crate::connection::Law;
 
 fn inertia_schema(_: &mut SchemaGenerator) -> Schema {
@@ -72,6 +75,10 @@ pub(super) struct WrittenVehicle {
     pub traction: Option<Traction>,
     /// Dynamic brake.
     pub dynamic_brake: Option<DynamicBrake>,
+    /// Air brake.
+    pub air_brake: Option<AirBrake>,
+    /// Parking brake.
+    pub parking_brake: Option<ParkingBrake>,
     /// What stands on or hangs under the bodies, for drawings.
     #[serde(default)]
     pub equipment: Vec<Equipment>,

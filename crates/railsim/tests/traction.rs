@@ -1,0 +1,154 @@
+//! Driven runs: what is refused, what stays the same, and that equipment acts as it is written.
+//!
+//! The comparisons with the paper and with hand formulas stand in `tests/validation/test_traction.py`.
+
+mod common;
+
+use common::{case, coco134, column};
+use railsim::run::{Action, Ended, Free, Law, Outcome, Outside, simulate, simulate_controlled};
+use railsim::schema::Case;
+use serde_json::{Value, json};
+
+/// The locomotive on the paper's dry rail (Spiryagin et al. 2013, Table 4) at 22 km/h.
+fn locomotive(drive: Value) -> Value {
+    let mut case = coco134();
+    case["run"]["speed"] = json!(22.0 / 3.6);
+    case["run"]["creep"] = json!({ "kind": "polach", "k_a": 0.6, "k_s": 0.15 });
+    case["run"]["friction"] = json!({ "value": 0.47, "falling": { "ratio": 0.44, "decay": 0.7 } });
+    case["run"]["output_step"] = json!(0.01);
+    case["run"]["drive"] = drive;
+    case["track"]["length"] = json!(1000.0);
+    case
+}
+
+fn run(value: &Value) -> Outcome {
+    simulate(&case(value), &Free).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn message(value: &Value) -> String {
+    match Case::from_value(value).and_then(|case| simulate(&case, &Free)) {
+        Ok(_) => panic!("accepted"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn torque_is_the_reference_after_the_lag_and_the_same_bytes_twice() {
+    let drive = json!({
+        "notch": [[0.1, 4]], "resistance": false, "observer": { "noise": 0.01, "seed": 7 }, "until": { "time": 0.8 }
+    });
+    let outcome = run(&locomotive(drive.clone()));
+    assert_eq!(outcome.ended, Ended::Complete);
+    let (t, effort) = (column(&outcome.columns, "t"), column(&outcome.columns, "traction.effort"));
+    assert!((t[t.len() - 1] - 0.8).abs() < 1e-9);
+    // Notch 4 of 8 at 22 km/h: a quarter of 2.6 MW, 106.4 kN; first order with 0.05 s from 0.1 s on.
+    let v = column(&outcome.columns, "v");
+    for i in [5, 11, 15, 20, 80] {
+        let full = 0.25 * 2.6e6 / v[i];
+        let wanted = if t[i] < 0.1 { 0.0 } else { full * (1.0 - (-(t[i] - 0.1) / 0.05).exp()) };
+        assert!((effort[i] - wanted).abs() < 0.005 * full, "{} s: {} {wanted}", t[i], effort[i]);
+    }
+    let again = run(&locomotive(drive));
+    for ((name, a), (_, b)) in outcome.columns.iter().zip(&again.columns) {
+        let same = a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+        assert!(same, "{name}");
+    }
+}
+
+#[test]
+fn a_lumped_train_takes_its_share_of_the_effort() {
+    let mut value = locomotive(json!({ "notch": 8, "resistance": false, "until": { "time": 6.0 } }));
+    value["run"]["train"] =
+        json!({ "mass": 1500e3, "rotary_mass": 34.7e3, "resistance": false, "coupler": { "damping": 1e6 } });
+    let outcome = run(&value);
+    let last = |name: &str| {
+        let c = column(&outcome.columns, name);
+        c[c.len() - 100..].iter().sum::<f64>() / 100.0
+    };
+    // Level track: both parts accelerate alike; 25.3 t are the turning of the locomotive's wheelsets.
+    let (train, locomotive) = (1534.7, 134.0 + 25.3);
+    let by_hand = last("traction.effort") * train / (train + locomotive);
+    println!("drawbar {:.0} N, by hand {by_hand:.0} N", last("train.drawbar"));
+    assert!((last("train.drawbar") - by_hand).abs() < 0.01 * by_hand);
+}
+
+/// Sets torques that do not need a controller.
+struct Constant;
+
+impl Law for Constant {
+    fn sample(&mut self, t: f64, seen: &[f64]) -> Result<Action, String> {
+        match seen {
+            [v] if t < 0.15 => Ok(Action { torque: Some(vec![100.0 * v; 6]), independent_brake: None }),
+            _ => Err("it has had enough".to_owned()),
+        }
+    }
+}
+
+#[test]
+fn a_control_law_is_obeyed_and_its_failure_named() {
+    let mut value = locomotive(json!({ "resistance": false, "until": { "time": 0.1 } }));
+    let go = |value: &Value, channels: &[&str]| {
+        let channels = channels.iter().map(|c| (*c).to_owned()).collect();
+        let mut outside = Outside { name: "constant".to_owned(), channels, law: &mut Constant };
+        simulate_controlled(&case(value), &Free, &mut outside)
+    };
+    let outcome = go(&value, &["v"]).unwrap_or_else(|e| panic!("{e}"));
+    let torque = column(&outcome.columns, "ws3.torque");
+    assert!((torque[10] / (100.0 * 22.0 / 3.6 * (1.0 - (-2.0_f64).exp())) - 1.0).abs() < 1e-3);
+    value["run"]["drive"]["until"]["time"] = json!(0.3);
+    let failed = go(&value, &["v"]).unwrap_err().to_string();
+    assert!(failed.contains("constant at t = 0.150 s: it has had enough"), "{failed}");
+    assert!(go(&value, &["nothing"]).unwrap_err().to_string().contains("controller.channels[0]"));
+}
+
+#[test]
+fn what_cannot_be_driven_is_refused_by_key() {
+    let good = || locomotive(json!({ "notch": 8, "until": { "time": 1.0 } }));
+    let with = |change: &dyn Fn(&mut Value)| {
+        let mut value = good();
+        change(&mut value);
+        message(&value)
+    };
+    type Change<'a> = (&'a str, &'a dyn Fn(&mut Value));
+    let cases: [Change<'_>; 14] = [
+        ("run.drive.notch", &|v| v["run"]["drive"]["notch"] = json!(9)),
+        ("run.drive.notch[1][0]", &|v| v["run"]["drive"]["notch"] = json!([[1.0, 3], [0.5, 4]])),
+        ("run.drive.dynamic_brake", &|v| v["run"]["drive"]["dynamic_brake"] = json!(1.5)),
+        ("run.drive.period", &|v| v["run"]["drive"]["period"] = json!(0.0105)),
+        ("run.drive.until", &|v| {
+            v["run"]["speed"] = json!(0.0);
+            v["run"]["drive"]["until"] = json!({});
+        }),
+        ("run.drive.nootch", &|v| v["run"]["drive"]["nootch"] = json!(8)),
+        ("run.drive.observer.diameter_error", &|v| {
+            v["run"]["drive"]["observer"] = json!({ "diameter_error": [0.01] });
+        }),
+        ("run.train", &|v| {
+            v["run"]["train"] = json!({ "mass": 1e5 });
+            v["run"].as_object_mut().unwrap().remove("drive");
+        }),
+        ("run.train.mass", &|v| v["run"]["train"] = json!({ "mass": -1.0 })),
+        ("run.integrator.step", &|v| {
+            v["run"]["train"] = json!({ "mass": 1e3, "coupler": { "stiffness": 1e10 } });
+        }),
+        ("vehicle.traction.notch_curves[0][1][0]", &|v| {
+            v["vehicle"]["traction"]["notches"] = json!(1);
+            v["vehicle"]["traction"]["notch_curves"] = json!([[[5.0, 1e5], [3.0, 2e5]]]);
+            v["run"]["drive"]["notch"] = json!(1);
+        }),
+        ("vehicle.traction.notch_curves", &|v| {
+            v["vehicle"]["traction"]["notch_curves"] = json!([[[0.0, 1e5], [3.0, 2e5]]]);
+        }),
+        ("vehicle.traction.thermal.continuous_effort", &|v| {
+            v["vehicle"]["traction"]["thermal"] =
+                json!({ "continuous_effort": -1.0, "short_time_effort": 3e5, "short_time": 600.0 });
+        }),
+        ("run.drive.notch", &|v| {
+            v["vehicle"].as_object_mut().unwrap().remove("traction");
+        }),
+    ];
+    for (key, change) in cases {
+        let found = with(change);
+        assert!(found.starts_with(&format!("{key}: ")), "{key} in: {found}");
+    }
+}

@@ -1,0 +1,129 @@
+"""Runs with a driver (LMAP stage 3): traction, brakes, a train.
+
+One case for every `[[test.case]]` of the spec: its label, and what it changes in `[run]` and `[track]`. Without a
+speed the vehicle starts from rest. Added to every frame, the same in each row: `run.duration` (s), `run.distance`
+(m), `run.final_speed`, `run.least_speed` (m/s), `run.deceleration` (m/s2, the mean from start to end) and
+`run.movement` (m, the largest distance from the start). The air brake by itself gets `brake.application_time` and
+`brake.release_time` (s).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from lmap.procedures.base import CaseFigures, settings
+from lmap.spec.case import Case, VehicleData, build, merged
+from lmap.spec.model import Spec
+from lmap.verdict import Fact
+
+if TYPE_CHECKING:
+    import polars as pl
+
+NAME = "drive"
+SUMMARY = "runs with traction, brakes and a train, one for each case of the spec"
+UNITS: Mapping[str, str] = {
+    "run.duration": "s",
+    "run.distance": "m",
+    "run.final_speed": "m/s",
+    "run.least_speed": "m/s",
+    "run.deceleration": "m/s2",
+    "run.movement": "m",
+    "brake.application_time": "s",
+    "brake.release_time": "s",
+}
+
+
+class Variant(BaseModel):
+    """`[[test.case]]`: one run."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    label: str = Field(min_length=1)
+    speed_kmh: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
+    """Initial speed instead of the spec's."""
+    run: dict[str, Any] = Field(default_factory=dict)
+    """Laid over `[run]`."""
+    track: dict[str, Any] = Field(default_factory=dict)
+    """Laid over `[track]`."""
+
+
+class Settings(BaseModel):
+    """`[test]`."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    kind: str = Field(default="time", pattern="^(time|air_brake)$")
+    """`air_brake` tests the air brake by itself, nothing moving."""
+    case: list[Variant] = Field(min_length=1)
+
+
+SETTINGS = Settings
+
+
+def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
+    """One for each `[[test.case]]`."""
+    test = settings(spec, Settings)
+    speeds = spec.run.speeds
+    start = speeds[0].resolve(vehicle.design_speed) if speeds else 0.0
+    profiles = spec.run.wheel_profile or [vehicle.wheel_profile or ""]
+    found = []
+    for variant in test.case:
+        run = merged(
+            {"kind": test.kind, "speed": start, "wheel_profile": profiles[0], **spec.run.rest}, variant.run
+        )
+        if variant.speed_kmh is not None:
+            run["speed"] = variant.speed_kmh / 3.6
+        track = merged(spec.track, variant.track)
+        found.append(build(label=variant.label, vehicle=vehicle, track=track, run=run))
+    return found
+
+
+def quantities(
+    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+) -> Mapping[str, pl.DataFrame]:
+    """The frames with what each run came to."""
+    return {
+        label: _with_sums(frame) if "v" in frame.columns else _with_times(frame)
+        for label, frame in frames.items()
+    }
+
+
+def _with_times(frame: pl.DataFrame) -> pl.DataFrame:
+    """The air brake's times from the first change of the cylinder: to 95 % of its last pressure, to 5 % of its first.
+
+    NaN where it does not get there.
+    """
+    import polars as pl
+
+    t, p = frame["t"].to_numpy(), frame["brake.cylinder"].to_numpy()
+    changed = (abs(p - p[0]) > 1e-6 * max(p.max(), 1.0)).nonzero()[0]
+    begin = float(t[max(int(changed[0]) - 1, 0)]) if changed.size else float("nan")
+    full, empty = (p >= 0.95 * p[-1]).nonzero()[0], (p <= 0.05 * p[0]).nonzero()[0]
+    applied = float(t[full[0]]) - begin if p[-1] > p[0] and full.size else float("nan")
+    released = float(t[empty[0]]) - begin if p[0] > p[-1] and empty.size else float("nan")
+    return frame.with_columns(
+        pl.lit(applied).alias("brake.application_time"), pl.lit(released).alias("brake.release_time")
+    )
+
+
+def _with_sums(frame: pl.DataFrame) -> pl.DataFrame:
+    import polars as pl
+
+    t, s, v = pl.col("t"), pl.col("s"), pl.col("v")
+    duration = t.last() - t.first()
+    return frame.with_columns(
+        duration.alias("run.duration"),
+        (s.last() - s.first()).alias("run.distance"),
+        v.last().alias("run.final_speed"),
+        v.min().alias("run.least_speed"),
+        ((v.first() - v.last()) / duration).alias("run.deceleration"),
+        (s - s.first()).abs().max().alias("run.movement"),
+    )
+
+
+def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:
+    """Nothing beside the verdicts."""
+    return []

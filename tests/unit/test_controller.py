@@ -1,0 +1,84 @@
+"""Control laws of the user's."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from lmap import controller
+from lmap.analyse import vehicle_case
+from lmap.errors import InputProblem
+from lmap.spec.case import Case
+from lmap.vehicle import Vehicle
+
+
+def short(**drive: Any) -> Case:
+    vehicle = Vehicle.load("coco134")
+    run = {
+        "kind": "time",
+        "speed": 10.0,
+        "creep": {"kind": "polach", "k_a": 0.6, "k_s": 0.15},
+        "integrator": {"kind": "ros2", "step": 0.001},
+        "output_step": 0.01,
+        "drive": {"resistance": False, "until": {"time": 0.2}, **drive},
+    }
+    return vehicle_case(vehicle.data, vehicle.document.path, run, label="short")
+
+
+@pytest.mark.parametrize("name", ["", "nothing", "no_such_module_at_all:f", "math:no_such", "math:pi"])
+def test_a_name_that_is_no_function_is_one_message(name: str) -> None:
+    with pytest.raises(InputProblem, match="controller"):
+        controller.named(name)
+
+
+@pytest.mark.needs_core
+def test_a_law_sees_its_channels_and_its_torque_arrives() -> None:
+    seen: list[tuple[float, dict[str, float]]] = []
+
+    def law(t: float, channels: dict[str, float]) -> dict[str, list[float]]:
+        seen.append((t, channels))
+        return {"torque": [1000.0 * w for w in range(6)]}
+
+    frame = controller.simulate(short(period=0.02), law, channels=["v", "ws1.slip"])
+    assert [round(t, 9) for t, _ in seen] == [round(0.02 * k, 9) for k in range(11)]
+    assert set(seen[0][1]) == {"v", "ws1.slip"}
+    assert seen[0][1]["v"] == pytest.approx(10.0, abs=1e-3)
+    # First-order lag of 0.05 s: 98 % after 0.2 s.
+    for w in range(6):
+        assert frame[f"ws{w + 1}.torque"][-1] == pytest.approx(1000.0 * w * (1.0 - math.exp(-4.0)), rel=1e-6)
+
+
+@pytest.mark.needs_core
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ({"torque": [math.nan] * 6}, "NaN"),
+        ({"torque": [0.0] * 5}, "5 torques for 6 wheelsets"),
+        ({"independent_brake": -1.0}, "independent_brake of -1"),
+        ({"notch": 8}, "`notch`"),
+        ({"torque": "full"}, "NaN|torque|convert"),
+    ],
+)
+def test_a_bad_answer_is_one_message_that_names_the_law(answer: Any, message: str) -> None:
+    def my_law(t: float, channels: dict[str, float]) -> Any:
+        return answer
+
+    with pytest.raises(InputProblem, match=f"(?s)my_law.*({message})"):
+        controller.simulate(short(), my_law, channels=[])
+
+
+@pytest.mark.needs_core
+def test_a_law_that_raises_is_one_message_that_names_it() -> None:
+    def my_law(t: float, channels: dict[str, float]) -> Any:
+        raise RuntimeError("no torque today")
+
+    with pytest.raises(InputProblem, match=r"my_law.*no torque today"):
+        controller.simulate(short(), my_law, channels=[])
+
+
+@pytest.mark.needs_core
+def test_a_channel_that_is_none_is_refused() -> None:
+    with pytest.raises(InputProblem, match="ws9"):
+        controller.simulate(short(), lambda t, seen: None, channels=["ws9.slip"])
