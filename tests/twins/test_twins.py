@@ -17,6 +17,14 @@ SPECS = sorted((ROOT / "specs").glob("*.toml"))
 TWINS = sorted(Path(__file__).parent.glob("*.toml"))
 KEYS = {"spec", "must_fail", "set"}
 
+EXPLAINED = {
+    "curve_forces": {"lateral wheel force, quasi-static"},
+    "cyclic_cant": {"lateral acceleration at the bogie centres", "axle-sum L/V sustained over 50 ms"},
+    "exit_transition": {"axle-sum L/V sustained over 50 ms", "wheel L/V sustained over 50 ms"},
+    "harmonic_roll": {"lateral acceleration at the bogie centres", "roll of the car body"},
+}
+"""What the reference locomotive fails, by spec; docs/concepts/stage2_dynamic.md tells why."""
+
 
 def read(path: Path) -> dict[str, Any]:
     return tomllib.loads(path.read_text(encoding="utf-8"))
@@ -58,14 +66,17 @@ def test_the_twin_fails_for_its_criterion(twin: Path, monkeypatch: pytest.Monkey
 @pytest.mark.slow
 @pytest.mark.needs_core
 @pytest.mark.parametrize("twin", TWINS, ids=lambda path: path.stem)
-def test_the_good_one_passes_or_waits_for_a_person_or_for_data_alone(twin: Path) -> None:
+def test_the_good_one_passes_but_for_what_is_explained_or_waits_for_a_person_or_for_data(twin: Path) -> None:
     path = ROOT / "specs" / f"{twin.stem}.toml"
     acceptance = lmap.check(path)
     [spec] = acceptance.specs
     # what the vehicle declares no data for is not assessed, never passed
     needy = {one.name for one in Spec.model_validate(read(path)).criterion if one.needs is not None}
     judged = [one for one in spec.criteria if one.judged and one.bounds]
-    assert {one.outcome for one in judged if one.name not in needy} == {Outcome.PASS}
+    explained = EXPLAINED.get(twin.stem, set())
+    assert {one.name for one in judged if one.outcome is Outcome.FAIL} == explained
+    assert {one.outcome for one in judged if one.name not in needy | explained} == {Outcome.PASS}
     assert {one.outcome for one in judged if one.name in needy} <= {Outcome.PASS, Outcome.NOT_ASSESSED}
     by_person = spec.procedure == "view" and spec.outcome is Outcome.MANUAL  # until somebody signs it
-    assert acceptance.exit_code == (1 if by_person or spec.outcome is Outcome.NOT_ASSESSED else 0)
+    waits = by_person or spec.outcome is Outcome.NOT_ASSESSED
+    assert acceptance.exit_code == (1 if waits or explained else 0)

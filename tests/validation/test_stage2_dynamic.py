@@ -1,4 +1,4 @@
-"""Stage 2's tests in time: their geometry against what the paper and Annex B print, wheel forces and gaps against closed forms."""
+"""Stage 2 in time: geometry against what the paper and a table print, wheel forces and gaps against closed forms."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_wheels_bear_on_their_own_bogie_and_all_on_the_car_body() -> None:
 
 
 def test_gaps_show_the_yaw_of_a_bogie_in_a_curve(compare: Compare) -> None:
-    """Bogie centre at 6.6 m: the body is its chord, so the bogie turns by 6.6 m/R against it, less what it yaws in its track."""
+    """The body is the chord of its bogie centres at 6.6 m: a bogie turns by 6.6 m/R against it, and its yaw."""
     radius = 300.0
     layout = [
         {"kind": "tangent", "length": 10.0},
@@ -105,9 +105,11 @@ def _case(run: Mapping[str, Any], track: Mapping[str, Any] | None = None) -> lma
 
 @pytest.mark.slow
 def test_rollover_is_that_of_the_rigid_vehicle_its_lean_and_its_spinning_axles(compare: Compare) -> None:
-    """Moments about the track's centre at rail level: (Q high - Q low) b = sum of m (a h + g' y) + sum of Iyy omega V/R,
-    y outward from the track under the wheels, g' = g cos c + V2/R sin c, the last term that of the spinning axles. In flange
-    contact b is some per cent less than the 0.75 m taken: hence 4 %."""
+    """Moments about the track's centre at rail level: (Q high - Q low) b = sum of m (a h + g' y) + Iyy omega V/R.
+
+    y is outward from the track under the wheels, g' = g cos c + V2/R sin c, the last term that of the spinning
+    axles. In flange contact b is some per cent less than the 0.75 m taken: hence 4 %.
+    """
     curve = {"radius_m": 800.0, "cant_mm": 100.0, "unbalanced": 0.72, "label": "R 800"}
     acceptance = lmap.check(SPECS / "rollover.toml", set={"test.curves": [curve]})
     [result] = [case for case in acceptance.specs[0].cases if case.label == "R 800"]
@@ -116,9 +118,9 @@ def test_rollover_is_that_of_the_rigid_vehicle_its_lean_and_its_spinning_axles(c
     masses |= {f"ws{n}": (2850.0, 0.5335) for n in range(1, 7)}
     weight = sum(mass for mass, _ in masses.values())
     height = sum(mass * h for mass, h in masses.values()) / weight
-    # the curve is to the right, so outward is y < 0; a frame is the chord of the arc on which its axles stand (at -1.9, 0, 1.9 m),
-    # the body that of the bogie centres
-    chord = {name: 2 / 3 * 1.9**2 / 1600.0 for name in ("bogie1", "bogie2")}
+    # the curve is to the right, so outward is y < 0; a frame is the chord of the arc on which its axles stand (at -1.9,
+    # 0, 1.9 m), the body that of the bogie centres
+    chord = dict.fromkeys(("bogie1", "bogie2"), 2 / 3 * 1.9**2 / 1600.0)
     chord["carbody"] = chord["bogie1"] + 6.6**2 / 1600.0
     shifts = [
         m * (chord.get(name, 0.0) - float(steady[f"{name}.y"].mean())) for name, (m, _) in masses.items()

@@ -28,7 +28,9 @@ fn names_are_those_that_channels_use() {
     let sensors: Vec<&str> = v.sensors.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(bodies, ["carbody", "bogie1", "bogie2"]);
     assert_eq!(wheelsets, ["ws1", "ws2", "ws3", "ws4", "ws5", "ws6"]);
-    assert_eq!(sensors, ["carbody.lead_pivot", "bogie1.front", "carbody.trail_pivot", "bogie2.front"]);
+    let seats = ["carbody.cab_seat_front", "carbody.cab_seat_rear"];
+    let bogies = ["carbody.lead_pivot", "bogie1.front", "carbody.trail_pivot", "bogie2.front"];
+    assert_eq!(sensors, [&seats[..], &bogies[..]].concat());
 }
 
 #[test]
@@ -52,7 +54,7 @@ fn bodies_and_wheelsets_are_those_of_the_data_sheet() {
         assert!((w.position[0] - x).abs() < 1e-14, "{}", w.name);
         assert_eq!(w.position[1..], [0.0, -0.5335], "{}", w.name);
     }
-    let pivots = v.sensors.iter().filter(|s| s.body == "carbody");
+    let pivots = v.sensors.iter().filter(|s| s.name.ends_with("pivot"));
     let sensors: Vec<_> = pivots.map(|s| (s.body.as_str(), s.position)).collect();
     assert_eq!(sensors, [("carbody", [6.60, 0.0, -0.80]), ("carbody", [-6.60, 0.0, -0.80])]);
 }
@@ -170,7 +172,8 @@ fn the_vehicle_is_symmetrical_front_to_rear_and_left_to_right() {
         .map(|b| b.position)
         .chain(v.wheelsets.iter().map(|w| w.position))
         .chain(v.connections.iter().map(|c| c.points[0]))
-        .chain(v.sensors.iter().filter(|s| s.body == "carbody").map(|s| s.position))
+        .chain(v.sensors.iter().filter(|s| s.name.ends_with("pivot")).map(|s| s.position))
+        .chain(v.gaps.iter().filter(|g| g.between[1] == "carbody").map(|g| g.points[0]))
         .collect();
     for flip in [[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]] {
         for p in &points {

@@ -48,8 +48,23 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "[[template.axle.sensor]]",
         "[[template.axle.sensors]]",
-        "60: vehicle.template.axle.sensors: found an unknown key; allowed: body, connection, sensor, \
-         wheelset, use (did you mean sensor?)",
+        "60: vehicle.template.axle.sensors: found an unknown key; allowed: body, connection, gap, \
+         sensor, wheelset, use (did you mean sensor?)",
+    ),
+    (
+        "[contact]\n",
+        "[[gap]]\nname = \"side\"\nbetween = [\"frame\", \"frame\"]\npositions = [[0.0, 1.0, 0.0], [0.0, 1.1, 0.0]]\n\n[contact]\n",
+        "67: vehicle.gap[0].between: found frame and frame; allowed: two different bodies",
+    ),
+    (
+        "[contact]\n",
+        "[[gap]]\nname = \"side\"\nbetween = [\"frame\", \"ws1\"]\npositions = [[0.0, 1.0, 0.0], [0.0, 1.0, 0.0]]\n\n[contact]\n",
+        "68: vehicle.gap[0].positions: found the same point twice; allowed: two points apart: their distance is the clearance",
+    ),
+    (
+        "[contact]\n",
+        "[[gap]]\nname = \"side\"\nbetween = [\"frame\", \"ws1\"]\npositions = [[0.0, -1.0, 0.0], [0.0, -1.1, 0.0]]\nmirror = true\n\n[contact]\n",
+        "68: vehicle.gap[0].positions: found mirror = true with y = -1; allowed: y > 0 m: the right one, from which the left one is made",
     ),
     // Types and ranges.
     (

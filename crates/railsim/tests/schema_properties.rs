@@ -196,6 +196,7 @@ fn any_json() -> impl Strategy<Value = Value> {
             "body",
             "wheelset",
             "connection",
+            "gap",
             "sensor",
             "name",
             "mass",
