@@ -15,7 +15,8 @@ import lmap
 
 TESTS = Path(__file__).parent
 ROOT = TESTS.parent
-sys.path.insert(0, str(TESTS / "unit"))
+for helpers in ("properties", "unit"):
+    sys.path.insert(0, str(TESTS / helpers))
 
 
 def has_core() -> bool:

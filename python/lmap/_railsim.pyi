@@ -202,14 +202,15 @@ def smooth_profile(points_json: str, kind: Literal["wheel", "rail"], half_width:
     Smoothed over +-`half_width` mm (0.3 to 10). `InputError` for points that contact cannot be computed with.
     """
 
-def check_case(case_json: str) -> None:
+def check_case(case_json: str, tables: Tables | None = None) -> None:
     """Raise `InputError` with every fault of a case; key paths start at the root of the case."""
 
 @final
 class Tables:
-    """Contact tables that calls share: each is built once for a wheel, a rail and how they are placed, some 0.2 s.
+    """What calls share: contact tables, each built once for a wheel, a rail and how they are placed (some 0.2 s), and
+    the case that was read last.
 
-    At most 16 are kept. Results do not depend on it.
+    At most 16 tables are kept. Results do not depend on it.
     """
 
     def __new__(cls) -> Tables: ...
@@ -217,7 +218,7 @@ class Tables:
 def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of every channel that a case records, in the order of its columns."""
 
-def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
+def track_extremes(case_json: str, tables: Tables | None = None) -> dict[str, tuple[float, float]]:
     """Smallest and largest `lateral`, `vertical`, `cross_level` and `gauge` deviation of a case's track, m."""
 
 def equivalent_conicity(case_json: str, amplitude: float, tables: Tables | None = None) -> float | None:

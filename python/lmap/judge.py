@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
@@ -20,6 +21,7 @@ from lmap.verdict import (
 
 if TYPE_CHECKING:
     import polars as pl
+    from pydantic import TypeAdapter
 
     from lmap.execute.local import CaseOutcome
     from lmap.execute.store import Store
@@ -205,21 +207,26 @@ def _key(prepared: Prepared, results: Mapping[str, CaseOutcome]) -> str | None:
 
 
 def _noted(store: Store | None, key: str | None) -> _Judged | None:
-    from pydantic import TypeAdapter, ValidationError
+    from pydantic import ValidationError
 
     plain = None if store is None or key is None else store.note(key)
     if plain is None:
         return None
     try:
-        return TypeAdapter(_Judged).validate_python(plain)
+        return _adapter().validate_python(plain)
     except ValidationError:
         return None
 
 
 def _plain(judged: _Judged) -> Any:
+    return json.loads(json.dumps(_adapter().dump_python(judged), default=_as_list))
+
+
+@functools.cache
+def _adapter() -> TypeAdapter[_Judged]:
     from pydantic import TypeAdapter
 
-    return json.loads(json.dumps(TypeAdapter(_Judged).dump_python(judged), default=_as_list))
+    return TypeAdapter(_Judged)
 
 
 def _as_list(value: Any) -> Any:

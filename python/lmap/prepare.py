@@ -6,7 +6,7 @@ import functools
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,12 +22,14 @@ from lmap.procedures.base import (
     Look,
     Looking,
     Procedure,
+    Rewriting,
     Set,
 )
 from lmap.procedures.base import settings as checked_settings
 from lmap.simulate import Channel, case_of, channels, check_case, track_extremes
 from lmap.spec.case import Case, merged
 from lmap.spec.load import LoadedSpec, load
+from lmap.spec.measured import record_paths, with_records
 from lmap.spec.model import Spec
 from lmap.vehicle import Vehicle, located
 from lmap.verdict import Fact, InputFile
@@ -112,7 +114,10 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
             loaded.locate(Problem(key=("run",), found=found, allowed="speeds and profiles that differ"))
         )
     profiles, data = _profiles(cases, loaded, vehicle, base)
-    cases = [case.with_profiles(data) for case in cases]
+    try:
+        cases = [with_records(case.with_profiles(data), loaded.document.path) for case in cases]
+    except InputProblem as error:
+        raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
     sources = _Sources(loaded, vehicle, base, profiles)
     key = _key(spec, cases)
     noted = None if store is None else _noted(store, key)
@@ -132,7 +137,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
         cases=tuple(cases),
         channels=known,
         facts=facts,
-        inputs=_inputs(sources) + _outline_input(outline),
+        inputs=(*_inputs(sources), *_outline_input(outline), *_records(cases, loaded.document.path)),
         key=key,
     )
 
@@ -316,23 +321,31 @@ def _checked(
     spec: Spec, cases: Sequence[Case], sources: _Sources, procedure: Procedure
 ) -> dict[str, Channel]:
     """The channels that any case gives and those that are derived, after the core has checked every case."""
+
+    def told(case: Case, problem: Problem) -> Problem:
+        """A fault of a case where the spec writes it, or the file that does."""
+        if isinstance(procedure, Rewriting):
+            problem = replace(problem, key=procedure.origin(spec, case.label, problem.key))
+        return sources.locate(problem)
+
+    known: dict[str, Channel] = {}
+    asked: set[str] = set()
     problems: list[Problem] = []
+    asked: set[str] = set()
     for case in cases:
         try:
             check_case(case)
+            alike = _names_hang_on(case)
+            if alike in asked:
+                continue
+            asked.add(alike)
+            # compiles the model, and knows more: names of coordinates, of bodies
+            for channel in channels(case):
+                known.setdefault(channel.name, channel)
         except InputProblem as error:
-            problems += [sources.locate(problem) for problem in error.problems]
+            problems += [told(case, problem) for problem in error.problems]
     if problems:
         raise InputProblem(problems)
-    known: dict[str, Channel] = {}
-    asked = set()
-    for case in cases:
-        alike = _names_hang_on(case)
-        if alike in asked:
-            continue
-        asked.add(alike)
-        for channel in channels(case):
-            known.setdefault(channel.name, channel)
     added = dict(procedure.UNITS)
     if isinstance(procedure, Deriving):
         added |= procedure.derived(spec, {name: channel.unit for name, channel in known.items()})
@@ -394,6 +407,17 @@ def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
     return tuple(inputs)
 
 
+def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
+    """The measured tracks of all cases."""
+    found: dict[Path, str] = {}
+    for case in cases:
+        for path in record_paths(case, beside).values():
+            found.setdefault(path, hashlib.sha256(path.read_bytes()).hexdigest())
+    return [
+        InputFile(role="measured track", path=files.shown(path), sha256=sha) for path, sha in found.items()
+    ]
+
+
 def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
     if outline is None:
         return ()
@@ -417,6 +441,7 @@ def load_case(path: Path) -> Case:
             case = case_of(document.data, path.stem)
         else:
             case = case_of(toml.json_loads(files.read_text(path, "case"), "a case"), path.stem)
+        case = with_records(case, path)
         check_case(case)
     except InputProblem as error:
         raise InputProblem(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lmap import toml
 from lmap.errors import InputProblem, Problem, SimulationProblem
 from lmap.spec.case import Case
+from lmap.spec.measured import with_records
 
 if TYPE_CHECKING:
     import polars as pl
@@ -38,10 +40,15 @@ def simulate(case: Case | Mapping[str, Any] | str) -> pl.DataFrame:
 
 
 def as_case(case: Case | Mapping[str, Any] | str) -> Case:
-    """A case from its plain data or its JSON; an `InputProblem` where it is neither."""
+    """A case from its plain data or its JSON; an `InputProblem` where it is neither.
+
+    Files of measured tracks that nobody has read yet are seen from the working folder.
+    """
     if isinstance(case, Case):
-        return Case(case.label, toml.plain(case.data, "a case"))
-    return case_of(toml.json_loads(case, "a case") if isinstance(case, str) else case, "case")
+        known = Case(case.label, toml.plain(case.data, "a case"), case.texts)
+        return known if known.texts else with_records(known, Path.cwd())
+    data = toml.json_loads(case, "a case") if isinstance(case, str) else case
+    return with_records(case_of(data, "case"), Path.cwd())
 
 
 def case_of(data: Any, label: str) -> Case:
@@ -56,7 +63,7 @@ def check_case(case: Case) -> None:
     """Raises an `InputProblem` with everything that the core finds wrong; keys start at the case."""
     railsim = toml.core()
     try:
-        railsim.check_case(case.json)
+        railsim.check_case(case.core_json, toml.tables())
     except railsim.InputError as error:
         raise InputProblem(toml.problems_of_core(error)) from None
 
@@ -65,7 +72,7 @@ def channels(case: Case) -> list[Channel]:
     """The channels that a case gives."""
     railsim = toml.core()
     try:
-        return [Channel(*channel) for channel in railsim.channels(case.json, toml.tables())]
+        return [Channel(*channel) for channel in railsim.channels(case.core_json, toml.tables())]
     except railsim.InputError as error:
         raise InputProblem(toml.problems_of_core(error)) from None
 
@@ -74,7 +81,7 @@ def track_extremes(case: Case) -> dict[str, tuple[float, float]]:
     """Least and largest `lateral`, `vertical`, `cross_level` and `gauge` deviation of a case's track, m."""
     railsim = toml.core()
     try:
-        extremes = railsim.track_extremes(case.json)
+        extremes = railsim.track_extremes(case.core_json, toml.tables())
     except railsim.RailsimError as error:
         raise SimulationProblem(str(error)) from None
     return {name: (float(least), float(most)) for name, (least, most) in extremes.items()}

@@ -145,7 +145,7 @@ class InputFile:
     """A file that went into a check."""
 
     role: str
-    """spec, vehicle, track, outline or profile."""
+    """spec, vehicle, track, outline, profile or measured track."""
     path: str
     sha256: str
 

@@ -179,3 +179,45 @@ def test_every_message_of_several_specs(messages: Callable[..., list[str]]) -> N
     assert found[1].endswith(
         f'found "huntign"; allowed: {listed(sorted(BY_NAME), 40)} (did you mean "hunting"?)'
     )
+
+
+STEP, PUSH, RAMP = "specs/step.toml", "specs/vertical_push.toml", "specs/critical_speed.toml"
+STAGE_1 = [
+    # spec, what is written, what stands there instead, start and parts of the message
+    (STEP, '"carbody.z" = -0.02', '"carbody.q" = -0.02', "run.disturbance", ["`carbody.q`", "x, y, z, phi"]),
+    (STEP, '"carbody.z" = -0.02', '"carbody.z" = "x"', "run.disturbance", ['found "x"', "a number"]),
+    (STEP, "band = 0.001", "bend = 0.001", "test.bend", ['"bend"', 'mean "band"?']),
+    (STEP, "band = 0.001", "band = 1.5", "test.band", ["found 1.5", "< 1"]),
+    (STEP, "residual_s = 10.0", "", "test.residual_s", ["found nothing"]),
+    (STEP, "step = 0.005", "step = -1", "run.integrator[1].step", ["found -1", "above 0"]),
+    (STEP, "step = 0.005", "steps = 0.005", "run.integrator[1].steps", ["unknown key", "step"]),
+    (STEP, '{ kind = "ros2", step = 0.005 }', "3", "run.integrator[1]", ["found 3", "kind"]),
+    (PUSH, '"carbody.z"', '"carbody.theta"', "run.load", ["no displacement", "y or z of a body"]),
+    (PUSH, '"carbody.z"', '"carbdoy.z"', "run.load[0].coordinate", ["`carbdoy.z`", "carbody"]),
+    (PUSH, "path = [0.0, 0.05]", "path = []", "run.load[0].path", ["found"]),
+    (RAMP, 'disturbance = { "carbody.y" = 0.02 }', "", "run.disturbance", ["found nothing", "carbody.y"]),
+    (
+        RAMP,
+        "[run.search.hunting]",
+        "disturbance = {}\n[run.search.hunting]",
+        "run.search.disturbance",
+        ["unknown"],
+    ),
+    (RAMP, "speed_kmh = 250.0", "speed_kmh = 0.0", "test.beside.bifurcation.speed_kmh", ["found 0", "> 0"]),
+    (RAMP, "end_speed = 44.4", "end_speed = 4444.4", "test.beside.bifurcation.search.end_speed", ["below"]),
+    (RAMP, "spacing = 10.0", "spacing = -1", "test.beside.linear.search.spacing", ["found -1", "> 0"]),
+    (RAMP, "[test.beside.linear]", "[test.besides.linear]", "test.besides", ['mean "beside"?']),
+]
+
+
+@pytest.mark.parametrize(
+    ("spec", "old", "new", "key", "parts"), STAGE_1, ids=[f"{Path(row[0]).stem}-{row[3]}" for row in STAGE_1]
+)
+def test_faults_of_stage_1(
+    messages: Callable[..., list[str]], spec: str, old: str, new: str, key: str, parts: list[str]
+) -> None:
+    spoil(spec, old, new)
+    found = messages(spec)
+    wanted = [line for line in found if line.startswith(f"lmap: {spec}:") and f": {key}" in line]
+    assert wanted, found
+    assert all(part in wanted[0] for part in parts), found

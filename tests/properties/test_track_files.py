@@ -46,7 +46,14 @@ ROUGH = BASE | {
             "seed": 1,
             "period": 100.0,
         },
-        {"kind": "psd", "form": "erri_b176", "level": "low", "wavelengths": [3.0, 30.0], "seed": 2},
+        {
+            "kind": "psd",
+            "form": "erri",
+            "level": "low",
+            "wavelengths": [3.0, 30.0],
+            "seed": 2,
+            "period": 90.0,
+        },
         {
             "kind": "shape",
             "shape": "versine",
@@ -57,20 +64,87 @@ ROUGH = BASE | {
         },
     ],
 }
-TRACKS = {"curved": CURVED, "rough": ROUGH}
+PASSING = BASE | {
+    "length": 70.0,
+    "layout": [
+        {"kind": "tangent", "length": 15.0},
+        {"kind": "cubic_parabola", "length": 10.0},
+        {"kind": "curve", "length": 10.0, "radius": -600.0, "widening_mm": 4.0},
+        {"kind": "bloss", "length": 10.0},
+        {"kind": "tangent", "length": 5.0, "gradient": 0.01},
+        {"kind": "helmert", "length": 10.0},
+        {"kind": "tangent", "length": 10.0},
+    ],
+}
+SHAPES = [
+    {"shape": "flat_hump", "channel": "gauge", "start": 12.0, "length": 14.0, "rise": 2.0, "height": 0.002},
+    {
+        "shape": "kink",
+        "channel": "left_lateral",
+        "start": 12.0,
+        "length": 8.0,
+        "height": 0.002,
+        "rounding": 1.0,
+    },
+    {
+        "shape": "dipped_weld",
+        "channel": "right_vertical",
+        "start": 20.0,
+        "length": 2.0,
+        "dip_angle": 0.002,
+        "rounding": 0.2,
+    },
+    {
+        "shape": "rectified_sine",
+        "channel": "vertical",
+        "start": 12.0,
+        "length": 6.0,
+        "height": 0.002,
+        "waves": 2,
+    },
+]
+OWN = BASE | {
+    "length": 30.0,
+    "fade_in": 10.0,
+    "irregularity": [
+        *({"kind": "shape"} | shape for shape in SHAPES),
+        {
+            "kind": "psd",
+            "form": "table",
+            "density": {"vertical": [[0.01, 1e-5], [0.1, 1e-7], [1.0, 1e-10]]},
+            "wavelengths": [1.5, 40.0],
+            "seed": 1,
+            "period": 100.0,
+        },
+        {
+            "kind": "measured",
+            "file": "line.csv",
+            "text": "s_m,vertical_mm,left_lateral_mm\n0,0,0\n10,1,0.5\n20,-1,0\n31,0,0.2\n40,0,0\n",
+            "repeat_blend": 10.0,
+        },
+    ],
+}
+TRACKS = {"curved": CURVED, "rough": ROUGH, "passing": PASSING, "own": OWN}
 PLACES = {name: places(track) for name, track in TRACKS.items()}
 WORDS = [
     "as60",
     "clothoid",
     "cross_level",
+    "cubic_parabola",
     "curve",
-    "erri_b176",
+    "erri",
+    "flat_hump",
     "fra_hamid_yang",
     "high",
+    "kink",
+    "left_lateral",
+    "measured",
     "psd",
     "rigid",
     "shape",
+    "s_m,vertical_mm\n0,1\n",
     "sine",
+    "table",
     "tangent",
     "",
 ]
@@ -96,7 +170,7 @@ def test_the_good_track_runs(name: str) -> None:
     assert runs_or_is_refused(case(TRACKS[name], RUN))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=st.data(), name=st.sampled_from(sorted(TRACKS)))
 def test_a_damaged_track_is_run_or_refused(data: st.DataObject, name: str) -> None:
     track = damaged(data, TRACKS[name], PLACES[name], WORDS)

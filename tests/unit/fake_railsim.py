@@ -32,6 +32,10 @@ class InputError(RailsimError):
         super().__init__("\n".join(f"{fault['path']}: found {fault['found']}" for fault in faults))
 
 
+class Tables:
+    pass
+
+
 class DivergenceError(RailsimError):
     pass
 
@@ -143,7 +147,7 @@ _KNOWN = {
 }
 
 
-def check_case(case_json: str) -> None:
+def check_case(case_json: str, tables: Tables | None = None) -> None:
     case = json.loads(case_json)
     faults = []
     for part, known in _KNOWN.items():
@@ -159,10 +163,6 @@ def check_case(case_json: str) -> None:
         faults.append(_fault(["track", "length"], "nothing", "a number > 0 m"))
     if faults:
         raise InputError(faults)
-
-
-class Tables:
-    pass
 
 
 def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, str, str]]:
@@ -183,7 +183,7 @@ def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, st
     return found
 
 
-def track_extremes(case_json: str) -> dict[str, tuple[float, float]]:
+def track_extremes(case_json: str, tables: Tables | None = None) -> dict[str, tuple[float, float]]:
     return {
         "lateral": (-0.005, 0.0051),
         "vertical": (-0.006, 0.0058),

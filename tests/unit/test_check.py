@@ -170,6 +170,18 @@ def test_a_vehicle_that_is_set_is_seen_from_the_working_folder() -> None:
         prepare(Path("specs/sway.toml"), {"vehicle": "./gone.toml"})
 
 
+def test_a_track_and_a_profile_that_are_set_are_seen_from_the_working_folder() -> None:
+    text = Path("models/tracks/toy_track.toml").read_text(encoding="utf-8")
+    Path("mine.toml").write_text(text.replace("1.435", "1.6"), encoding="utf-8")
+    Path("mine.csv").write_bytes(Path("models/profiles/round.csv").read_bytes())
+    own = {"track.base": "./mine.toml", "run.wheel_profile": "./mine.csv"}
+    prepared = prepare(Path("specs/sway.toml"), own)
+    assert prepared.spec.track["gauge"] == 1.6
+    assert [one.path for one in prepared.inputs if one.path.startswith("mine")] == ["mine.toml", "mine.csv"]
+    with pytest.raises(InputProblem, match=r"--set track\.base: found \"\./gone\.toml\", which is no file"):
+        prepare(Path("specs/sway.toml"), {"track.base": "./gone.toml"})
+
+
 def test_faults_of_a_case_name_the_file_that_holds_the_part() -> None:
     vehicle = Path("models/vehicles/toy.toml")
     vehicle.write_text(
@@ -210,7 +222,7 @@ def test_a_spec_given_twice_runs_once_and_equal_cases_run_once() -> None:
     text = Path("specs/sway.toml").read_text(encoding="utf-8")
     Path("specs/again.toml").write_text(text.replace('"9.1"', '"9.2"'), encoding="utf-8")
     acceptance = lmap.check(["specs", "sway"], progress=heard)
-    assert [spec.id for spec in acceptance.specs] == ["9.2", "9.1"]
+    assert [spec.id for spec in acceptance.specs] == ["9.1", "9.2"]
     assert [event[1:] for event in heard.events if event[0] == "done"] == [(1, None), (0, None)]
     assert heard.events[-1] == ("end",)
 

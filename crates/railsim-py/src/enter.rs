@@ -9,7 +9,7 @@ use std::any::Any;
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, channel, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -79,33 +79,45 @@ where
             .thread_name(|i| format!("railsim-{i}"))
             .build()
             .map_err(|e| InternalError::new_err(format!("no worker threads: {e}")))?;
-        let (sender, receiver) = channel();
+        let (sender, receiver) = channel::<Handed<L::Output>>();
         // The scope joins every worker before it returns, whatever happened in it.
         pool.in_place_scope_fifo(|scope| {
             for (index, slot) in slots.iter().enumerate() {
                 let (sender, work) = (sender.clone(), &work);
                 scope.spawn_fifo(move |_| {
                     let finished = slot.run(index, work);
+                    let (taken, wait) = sync_channel::<()>(0);
                     // Nobody listens any more after an exception; the result is not wanted then.
-                    drop(sender.send(finished));
+                    if sender.send((finished, taken)).is_ok() {
+                        // Until the listener has dealt with it and lets go of `taken`: no more than `jobs` results
+                        // wait in memory, and `jobs` threads are all that works.
+                        drop(wait.recv());
+                    }
                 });
             }
             drop(sender);
-            attend(&receiver, &slots, listener).inspect_err(|_| stop.store(true, Ordering::Relaxed))
+            attend(receiver, &slots, listener).inspect_err(|_| stop.store(true, Ordering::Relaxed))
         })
     })
 }
 
-/// Serves the listener until every worker has hung up.
+/// A finished case, and what its worker waits on: dropped when the case has been dealt with.
+type Handed<T> = (Finished<T>, SyncSender<()>);
+
+/// Serves the listener until every worker has hung up. Takes the receiver along when it leaves: workers that wait for their
+/// result to be dealt with are let go.
 fn attend<L: Listener>(
-    receiver: &Receiver<Finished<L::Output>>,
+    receiver: Receiver<Handed<L::Output>>,
     slots: &[Slot<'_>],
     listener: &mut L,
 ) -> PyResult<()> {
     let mut next = Instant::now() + POLL;
     loop {
         match receiver.recv_timeout(next.saturating_duration_since(Instant::now())) {
-            Ok(finished) => Python::attach(|py| listener.done(py, finished))?,
+            Ok((finished, taken)) => {
+                Python::attach(|py| listener.done(py, finished))?;
+                drop(taken);
+            }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }

@@ -31,8 +31,9 @@ pub fn fingerprint() -> &'static str {
 
 /// Every fault of a case, at once.
 #[pyfunction]
-pub fn check_case(py: Python<'_>, case_json: &str) -> PyResult<()> {
-    read(py, case_json, None).map(drop)
+#[pyo3(signature = (case_json, tables=None))]
+pub fn check_case(py: Python<'_>, case_json: &str, tables: Option<&Tables>) -> PyResult<()> {
+    read(py, case_json, tables).map(drop)
 }
 
 /// Name, unit and meaning of every channel.
@@ -50,8 +51,13 @@ pub fn channels(
 
 /// Smallest and largest value of each track irregularity.
 #[pyfunction]
-pub fn track_extremes(py: Python<'_>, case_json: &str) -> PyResult<BTreeMap<&'static str, (f64, f64)>> {
-    let case = read(py, case_json, None)?;
+#[pyo3(signature = (case_json, tables=None))]
+pub fn track_extremes(
+    py: Python<'_>,
+    case_json: &str,
+    tables: Option<&Tables>,
+) -> PyResult<BTreeMap<&'static str, (f64, f64)>> {
+    let case = read(py, case_json, tables)?;
     let extremes = py.detach(|| {
         let track = &case.track;
         let at = KeyPath::of("track.irregularity");
@@ -74,7 +80,7 @@ pub fn run_cases(
     tables: Option<&Tables>,
 ) -> PyResult<()> {
     // A batch shares its tables whether the caller wants them afterwards or not.
-    let tables = tables.map(|t| t.0.clone()).unwrap_or_default();
+    let tables = tables.map(|t| t.tables.clone()).unwrap_or_default();
     enter(
         py,
         cases.len(),

@@ -28,13 +28,14 @@ struct Measured {
     columns: [Vec<f64>; 3],
     evaluations: f64,
     rejected: u64,
-    seconds: f64,
+    microseconds: f64,
 }
 
 fn measure(integrator: &Value) -> Measured {
     let mut value = rough();
     value["run"]["integrator"] = integrator.clone();
     let case = common::case(&value);
+    // With the contact tables, which are made before the first step: a second of it.
     let start = Instant::now();
     let outcome = simulate(&case, &Free).unwrap();
     let wall = start.elapsed().as_secs_f64();
@@ -44,7 +45,7 @@ fn measure(integrator: &Value) -> Measured {
         columns: JUDGED.map(|name| common::column(&outcome.columns, name).to_vec()),
         evaluations: outcome.statistics["right_hand_sides"].as_f64().unwrap() / simulated,
         rejected: outcome.statistics["rejected"].as_u64().unwrap(),
-        seconds: wall / simulated,
+        microseconds: 1e6 * wall / outcome.statistics["right_hand_sides"].as_f64().unwrap(),
     }
 }
 
@@ -60,31 +61,27 @@ fn difference(ours: &[f64], reference: &[f64]) -> f64 {
 #[allow(clippy::print_stdout)] // the table of the documentation
 fn what_each_scheme_costs_and_is_off_by() {
     let reference = measure(&json!({ "kind": "rk4", "step": 1.25e-4 }));
-    let mut worst = Vec::new();
-    for integrator in [
-        json!({ "kind": "heun", "step": 4e-4 }),
-        json!({ "kind": "heun", "step": 2e-4 }),
-        json!({ "kind": "heun_controlled", "step": 1e-3, "tolerance": 1e-2 }),
-        json!({ "kind": "heun_controlled", "step": 1e-3, "tolerance": 1e-3 }),
-        json!({ "kind": "heun_controlled", "step": 4e-3, "tolerance": 1e-3 }),
-        json!({ "kind": "rk4", "step": 1e-3 }),
-        json!({ "kind": "rk4", "step": 5e-4 }),
-        json!({ "kind": "ros2", "step": 1e-3 }),
-        json!({ "kind": "ros2", "step": 5e-4 }),
+    // Allowed of the wheel force, %: rk4 and Heun follow the reference, control to its tolerance; ros2 damps the contact's own
+    // vibration, which the forces show.
+    for (integrator, allowed) in [
+        (json!({ "kind": "heun", "step": 4e-4 }), 2.0),
+        (json!({ "kind": "heun", "step": 2e-4 }), 0.5),
+        (json!({ "kind": "heun_controlled", "step": 1e-3, "tolerance": 1e-2 }), 30.0),
+        (json!({ "kind": "heun_controlled", "step": 1e-3, "tolerance": 1e-3 }), 3.0),
+        (json!({ "kind": "heun_controlled", "step": 4e-3, "tolerance": 1e-3 }), 3.0),
+        (json!({ "kind": "rk4", "step": 1e-3 }), 2.0),
+        (json!({ "kind": "rk4", "step": 5e-4 }), 0.5),
+        (json!({ "kind": "ros2", "step": 1e-3 }), 20.0),
+        (json!({ "kind": "ros2", "step": 5e-4 }), 6.0),
     ] {
         let found = measure(&integrator);
         let off = [0, 1, 2].map(|i| 100.0 * difference(&found.columns[i], &reference.columns[i]));
         println!(
-            "{integrator}: {:.0} right-hand sides and {:.3} s a simulated second, {} rejected; off by {off:.3?} %",
-            found.evaluations, found.seconds, found.rejected
+            "{integrator}: {:.0} right-hand sides a simulated second ({:.1} us each), {} rejected; off by {off:.3?} %",
+            found.evaluations, found.microseconds, found.rejected
         );
-        worst.push((integrator["kind"].as_str().unwrap().to_owned(), off));
-    }
-    // rk4 and Heun within its limit follow the reference; control to its tolerance; ros2 damps the contact's own vibration,
-    // which the forces show and the accelerations of the body do not.
-    for (kind, [ay, az, force]) in worst {
-        assert!(ay < 2.0 && az < 2.0, "{kind}: {ay} {az}");
-        assert!(force < if kind == "ros2" { 20.0 } else { 5.0 }, "{kind}: {force}");
+        let [ay, az, force] = off;
+        assert!(ay < 3.0 && az < 3.0 && force < allowed, "{integrator}: {off:?}");
     }
 }
 

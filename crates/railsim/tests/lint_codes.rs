@@ -2,6 +2,8 @@
 //!
 //! An example is a difference to a vehicle that ships, `diff VEHICLE [CONDITION]`, or keys of `run` in `toml`. Comments count for nothing.
 
+#![allow(clippy::print_stdout)] // findings are shown, from helpers too
+
 mod common;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -417,13 +417,13 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/track/irregularity",
             json!({ "kind": "bump" }),
-            "track.irregularity.kind: found \"bump\"; allowed: \"psd\", \"shape\"",
+            "track.irregularity.kind: found \"bump\"; allowed: \"psd\", \"shape\", \"measured\"",
         ),
         (
             "/track/layout",
             json!([{ "kind": "curve", "length": 50, "radius": 300, "cant": 20 }]),
             "track.layout[0].cant: found an unknown key; allowed: cant_mm, curvature, gradient, kind, \
-         length, radius (did you mean cant_mm?)",
+         length, radius, widening_mm (did you mean cant_mm?)",
         ),
         (
             "/track/layout",

@@ -5,8 +5,8 @@
 use railsim::error::{Error, KeyPath};
 use railsim::math::fft;
 use railsim::track::irregularity::{
-    Channel, Deviation, DeviationField, Form, GaugeSeries, Irregularity, Level, Psd, Shape, ShapeChannel,
-    Wave, spectrum,
+    Channel, Density, Deviation, DeviationField, Form, GaugeSeries, Irregularity, Level, Measured, Psd,
+    Shape, ShapeChannel, Wave, spectrum,
 };
 
 fn field(written: &[Irregularity], length: f64) -> DeviationField {
@@ -27,6 +27,8 @@ fn class_6(seed: u64, gauge: GaugeSeries) -> Psd {
         form: Form::FraHamidYang,
         class: Some(6),
         level: None,
+        density: None,
+        density_rad: None,
         wavelengths: [1.5, 40.0],
         seed,
         period: 1000.0,
@@ -178,15 +180,11 @@ const HAND: [f64; 10] = [
 #[test]
 fn power_of_a_realisation_in_each_band_is_the_laws() {
     for example in Psd::examples() {
-        let grade = match (example.class, example.level) {
-            (Some(class), _) => usize::try_from(class).unwrap(),
-            (_, Some(Level::Low)) => 1,
-            _ => 2,
-        };
         let n = 1 << 14;
         let field = field(&[Irregularity::Psd(example.clone())], example.period);
         for channel in Channel::ALL {
-            if channel == Channel::Gauge && example.gauge == GaugeSeries::CrossLevel {
+            let smooth = example.spectrum(channel, 1.0 / example.wavelengths[1]) == 0.0;
+            if smooth || channel == Channel::Gauge && example.gauge == GaugeSeries::CrossLevel {
                 continue;
             }
             let sample = |i: usize| values(field.at(example.period * i as f64 / n as f64))[channel.index()];
@@ -211,7 +209,7 @@ fn power_of_a_realisation_in_each_band_is_the_laws() {
                 let law: f64 = (0..=cells)
                     .map(|i| {
                         let weight = if i == 0 || i == cells { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                        weight * spectrum(example.form, grade, channel, f0 + f64::from(i) * step)
+                        weight * example.spectrum(channel, f0 + f64::from(i) * step)
                     })
                     .sum::<f64>()
                     * step
@@ -669,5 +667,217 @@ fn all_faults_are_collected_with_their_keys() {
     assert_eq!(
         message,
         "track.irregularity.period: found 10000000 m; allowed: at most 78643 m with a shortest wavelength of 1.5 m"
+    );
+}
+
+fn record(text: &str) -> Measured {
+    Measured {
+        file: "line_12.csv".into(),
+        sha256: None,
+        text: Some(text.into()),
+        start: 0.0,
+        repeat_blend: None,
+        scale: 1.0,
+    }
+}
+
+#[test]
+fn a_measured_track_passes_through_its_samples_in_their_units_and_signs() {
+    // Every 0.1 m and unevenly; places in km, deviations in mm and inches, a column that is not ours.
+    let wave = |s: f64| 4.0 * (s / 5.0).sin();
+    let places: Vec<f64> = (0..1500).map(|i| 0.1 * f64::from(i) + 0.03 * f64::from(i % 3)).collect();
+    let lines: String = places
+        .iter()
+        .map(|s| format!("{:.9},{:.9},x,{:.9},{:.9}\n", s / 1000.0, wave(*s), -0.1 * wave(*s), 0.5))
+        .collect();
+    let text = format!("# measured\n\ns_km,vertical_mm,remark,left_lateral_in,gauge_mm\n{lines}");
+    let field = field(&[Irregularity::Measured(Measured { start: 7.0, scale: 2.0, ..record(&text) })], 140.0);
+    for s in places.iter().skip(1).step_by(7) {
+        let d = field.at(s + 7.0);
+        let left = 2.0 * 0.0254 * -0.1 * wave(*s);
+        let expected = [0.5 * left, -2e-3 * wave(*s), 0.0, 1e-3 - left];
+        for (ours, theirs) in values(d).into_iter().zip(expected) {
+            // Written with nine digits behind the point, of mm, inches and km.
+            assert!((ours - theirs).abs() < 1e-9, "{s}: {ours} {theirs}");
+        }
+    }
+    // Between them it errs by some third of (step)^3 times the third derivative/9 sqrt 3.
+    for i in 0..500 {
+        let s = 10.0 + 0.251 * f64::from(i);
+        let d = field.at(s + 7.0);
+        assert!((d.z + 2e-3 * wave(s)).abs() < 1e-7, "{s}: {} {}", d.z, -2e-3 * wave(s));
+        assert!((d.dz_ds + 8e-3 / 5.0 * (s / 5.0).cos()).abs() < 2e-6, "{s}");
+    }
+    // Held outside.
+    assert_eq!((field.at(-30.0).gauge, field.at(-30.0).dgauge_ds), (field.at(7.0).gauge, 0.0));
+}
+
+#[test]
+fn a_repeated_record_passes_smoothly_from_its_end_into_its_start() {
+    let example = Measured::examples().remove(1);
+    let (blend, start) = (example.repeat_blend.unwrap(), example.start);
+    let length = 0.25 * 1999.0;
+    let period = length - blend;
+    let field = field(&[Irregularity::Measured(example)], 2000.0);
+    // Between the passages the record repeats.
+    for s in [start + blend + 1.0, start + 200.0, start + period - 1.0] {
+        for (a, b) in values(field.at(s)).into_iter().zip(values(field.at(s + 2.0 * period))) {
+            assert!((a - b).abs() < 1e-12, "{s}");
+        }
+    }
+    // Across both ends of the passage value and slope are continuous, though the record's ends differ by 150 mm.
+    for seam in [start + period, start + period + blend, start + 2.0 * period] {
+        let (a, b) = (field.at(seam - 1e-7), field.at(seam + 1e-7));
+        for (a, b) in values(a).into_iter().zip(values(b)).chain(slopes(a).into_iter().zip(slopes(b))) {
+            assert!((a - b).abs() < 1e-7, "{seam}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_record_is_told_with_its_line() {
+    let told = |measured: Measured, length: f64| -> Vec<String> {
+        let at = KeyPath::of("track.irregularity");
+        match DeviationField::new(&[Irregularity::Measured(measured)], length, 0.0, 0.0, &at) {
+            Err(Error::Input(faults)) => faults.iter().map(ToString::to_string).collect(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let names = "s_m and lateral_mm, vertical_mm, cross_level_mm, gauge_mm, left_vertical_mm, ...";
+    let file = "track.irregularity.file: found \"line_12.csv\", ";
+    let good = "s_m,vertical_mm\n0,1\n10,2\n20,1\n";
+    for (text, message) in [
+        ("", "an empty file; allowed: a line of column names, then lines of numbers".to_owned()),
+        (
+            "place,vertical_mm\n0,1\n1,2\n",
+            format!(
+                "line 1: no column of places (or several): place,vertical_mm; allowed: {names} (a column's name ends in its \
+                 unit: s_m, s_km)"
+            ),
+        ),
+        (
+            "# top\ns_m,profile_mm\n0,1\n",
+            format!("line 2: no column of a channel: s_m,profile_mm; allowed: {names}"),
+        ),
+        (
+            "s_m,gauge_mm,gauge_in\n0,1,1\n",
+            "line 1: two columns of the same channel: s_m,gauge_mm,gauge_in; allowed: one column for each channel".into(),
+        ),
+        (
+            "s_m,vertical_mm\n0,1\n10,2\n10,3\n",
+            "line 4: place 10 m after 10 m; allowed: places that increase from line to line".into(),
+        ),
+        ("s_m,vertical_mm\n0,1\n10,two\n", "line 3: \"two\"; allowed: a number in every column".into()),
+        ("s_m,vertical_mm\n0,1\n10,nan\n", "line 3: \"nan\"; allowed: a number in every column".into()),
+        (
+            "s_m,vertical_mm\n0,1\n10\n",
+            "line 3: 1 columns where the first line names 2; allowed: a number in every column".into(),
+        ),
+        (
+            "s_m,gauge_mm\n0,1435\n10,1436\n",
+            "line 2: a deviation of 1.435 m; allowed: at most 0.5 m (deviations from the design, the gauge's too: not the \
+             gauge itself)"
+                .into(),
+        ),
+        ("s_m,gauge_mm\n0,1\n", "1 samples; allowed: two samples or more".into()),
+    ] {
+        assert_eq!(told(record(text), 10.0), [format!("{file}{message}")]);
+    }
+    assert_eq!(
+        told(record(good), 30.0),
+        [format!(
+            "{file}a record to 20 m; allowed: one that goes on to 30 m, the end of the track (repeat_blend = 50.0 repeats \
+             it, passing over 50 m)"
+        )]
+    );
+    assert_eq!(
+        told(Measured { text: None, ..record(good) }, 20.0),
+        [format!("{}which nobody has read; allowed: a file whose text is handed over with the case", file)]
+    );
+    assert_eq!(
+        told(Measured { repeat_blend: Some(11.0), ..record(good) }, 20.0),
+        [
+            "track.irregularity.repeat_blend: found 11; allowed: above 0 m, at most 10 m, half the record's length"
+        ]
+    );
+    assert!(
+        told(Measured { start: 40.0, ..record(good) }, 30.0)[0]
+            .starts_with("track.irregularity.start: found 40 m")
+    );
+    field(&[Irregularity::Measured(record(good))], 20.0);
+}
+
+#[test]
+fn a_table_of_points_is_the_law_that_it_was_taken_from() {
+    // Hamid and Yang's class 4 at 400 points: the same seed gives the same track, within what lies between the points.
+    let law = Psd { class: Some(4), ..class_6(3, GaugeSeries::Independent) };
+    let points = |channel: Channel, factor: f64| -> Vec<[f64; 2]> {
+        (0..400)
+            .map(|i| 0.02 * 40.0_f64.powf(f64::from(i) / 399.0))
+            .map(|f| [factor * f, law.spectrum(channel, f) / factor])
+            .collect()
+    };
+    let density = |factor: f64| Density {
+        lateral: points(Channel::Lateral, factor),
+        vertical: points(Channel::Vertical, factor),
+        cross_level: points(Channel::CrossLevel, factor),
+        gauge: points(Channel::Gauge, factor),
+    };
+    let table =
+        |density, density_rad| Psd { form: Form::Table, class: None, density, density_rad, ..law.clone() };
+    let reference = field(&[Irregularity::Psd(law.clone())], 1000.0);
+    let size: f64 = reference.extremes().iter().map(|e| e.1).fold(0.0, f64::max);
+    for written in [table(Some(density(1.0)), None), table(None, Some(density(std::f64::consts::TAU)))] {
+        let ours = field(&[Irregularity::Psd(written)], 1000.0);
+        for i in 0..1000 {
+            let s = 1.003 * f64::from(i);
+            for (a, b) in values(ours.at(s)).into_iter().zip(values(reference.at(s))) {
+                assert!((a - b).abs() < 1e-4 * size, "{s}: {a} {b}");
+            }
+        }
+    }
+    // Channels without points are smooth.
+    let alone = Density { vertical: points(Channel::Vertical, 1.0), ..Density::default() };
+    let alone = field(&[Irregularity::Psd(table(Some(alone), None))], 1000.0);
+    assert_eq!((alone.at(100.3).y, alone.at(100.3).gauge), (0.0, 0.0));
+    assert!(alone.at(100.3).z != 0.0);
+
+    let at = KeyPath::of("track.irregularity");
+    let told = |psd: Psd| -> Vec<String> {
+        Irregularity::Psd(psd).faults(&at).iter().map(ToString::to_string).collect()
+    };
+    assert_eq!(
+        told(table(None, None)),
+        [
+            "track.irregularity.density: found nothing; allowed: points with form = \"table\": density (1/m) or \
+             density_rad (rad/m)"
+        ]
+    );
+    assert_eq!(
+        told(table(Some(Density::default()), None)),
+        [
+            "track.irregularity.density: found no points; allowed: points [frequency, density] of lateral, vertical, cross_level or gauge"
+        ]
+    );
+    let vertical =
+        |points: &[[f64; 2]]| table(Some(Density { vertical: points.to_vec(), ..Density::default() }), None);
+    assert_eq!(
+        told(vertical(&[[0.1, 1e-6], [0.7, 1e-8]])),
+        [
+            "track.irregularity.density.vertical: found points from 0.1 to 0.7 1/m; allowed: points that cover 0.025000 \
+             to 0.666667 1/m, the band of wavelengths"
+        ]
+    );
+    assert_eq!(
+        told(vertical(&[[0.02, 1e-6], [0.01, 1e-8]])),
+        ["track.irregularity.density.vertical[1][0]: found 0.01; allowed: above 0.02, the frequency before"]
+    );
+    assert_eq!(
+        told(vertical(&[[0.02, 0.0], [0.8, 1e-8]])),
+        ["track.irregularity.density.vertical[0][1]: found 0; allowed: above 0 m2/(1/m)"]
+    );
+    assert_eq!(
+        told(Psd { density: Some(Density::default()), ..law }),
+        ["track.irregularity.density: found points; allowed: only with form = \"table\""]
     );
 }

@@ -25,9 +25,7 @@ def lint(
     ignore: Annotated[list[str] | None, typer.Option(metavar="CODES", help="Do not tell these.")] = None,
     integrator: Annotated[
         str,
-        typer.Option(
-            metavar="KIND", help="The scheme that the step is for: heun, heun_controlled, rk4, ros2."
-        ),
+        typer.Option(metavar="KIND", help="The scheme that the step is for: heun, rk4, ros2."),
     ] = "rk4",
     step: Annotated[
         float, typer.Option(metavar="S", help="The time step that the vehicle is to be run with, s.")

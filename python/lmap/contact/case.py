@@ -11,6 +11,6 @@ def equivalent_conicity(case: Case, amplitude: float = 0.003) -> float:
     """Equivalent conicity (EN 15302) of a case's wheel on its rail at a lateral amplitude in m."""
     railsim = toml.core()
     try:
-        return float(railsim.equivalent_conicity(case.json, amplitude, toml.tables()))
+        return float(railsim.equivalent_conicity(case.core_json, amplitude, toml.tables()))
     except railsim.RailsimError as error:
         raise SimulationProblem(str(error)) from None

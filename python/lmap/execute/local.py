@@ -111,7 +111,7 @@ def run_cases(
     entries = [Entry(shown[case.hash], _length(case), costs[case.hash]) for case in distinct]
     with hears:
         hears.begin(entries, threads, known)
-        railsim.run_cases([case.json for case in distinct], threads, on_progress, on_done, toml.tables())
+        railsim.run_cases([case.core_json for case in distinct], threads, on_progress, on_done, toml.tables())
     by_hash = {
         case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
         for case, outcome in zip(distinct, outcomes, strict=True)

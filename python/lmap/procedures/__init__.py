@@ -21,7 +21,16 @@ from lmap.procedures import (
     twist,
     view,
 )
-from lmap.procedures.base import CaseFigures, Deriving, Illustrated, Look, Looking, Procedure, Set
+from lmap.procedures.base import (
+    CaseFigures,
+    Deriving,
+    Illustrated,
+    Look,
+    Looking,
+    Procedure,
+    Rewriting,
+    Set,
+)
 
 # Keep this list sorted by name.
 PROCEDURES: tuple[Procedure, ...] = (
@@ -55,5 +64,6 @@ __all__ = [
     "Look",
     "Looking",
     "Procedure",
+    "Rewriting",
     "Set",
 ]

@@ -80,6 +80,14 @@ class Deriving(Procedure, Protocol):
 
 
 @runtime_checkable
+class Rewriting(Procedure, Protocol):
+    """A procedure whose cases hold what the spec writes under another key."""
+
+    def origin(self, spec: Spec, label: str, key: KeyPath) -> KeyPath:
+        """Where the spec writes a key of the case of this label, so that a fault of it is told there."""
+
+
+@runtime_checkable
 class Illustrated(Procedure, Protocol):
     """A procedure that draws what was judged."""
 

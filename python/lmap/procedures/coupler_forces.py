@@ -119,7 +119,9 @@ def quantities(
             "the vehicle at rest, whose wheel loads the others are compared with, has no result"
         )
     level = frames[REST]
-    least = min(float(level[name][0]) for name in level.columns if name.endswith(".Q"))
+    loads = [float(level[name][0]) for name in level.columns if name.endswith(".Q")]
+    if not loads:
+        raise JudgementProblem("the vehicle at rest has no wheel loads")
     length, height = _ends(model)
     angle = coupler_angle(length, test.radius)
     lost = coupler_unloading(test.force, angle, height) / test.wheels_that_share
@@ -127,7 +129,7 @@ def quantities(
         {
             "step": [0.0],
             "s": [0.0],
-            "unloading": [lost / least],
+            "unloading": [lost / min(loads)],
             "lateral_force": [test.force * math.sin(angle)],
         }
     )

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lmap.errors import KeyPath
 from lmap.procedures.base import CaseFigures, expand, settings
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
@@ -58,7 +59,7 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """A case for every wheel profile and speed, then for every wheel profile and search beside them."""
     found = expand(spec, vehicle, kind="critical_speed")
     profiles = spec.run.wheel_profile or [""]
-    for name, beside in settings(spec, Settings).beside.items():
+    for name, beside in sorted(settings(spec, Settings).beside.items(), key=lambda one: _rank(one[1])):
         for profile in profiles:
             own = next(case for case in found if profile in ("", case.data["run"]["wheel_profile"]))
             label = BESIDE + " ".join(part for part in (name, profile if len(profiles) > 1 else "") if part)
@@ -71,6 +72,22 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
                 run = {key: value for key, value in run.items() if key not in _STEPPED}
             found.append(Case(label, {**own.data, "label": label, "run": run}))
     return found
+
+
+def _rank(beside: Beside) -> tuple[bool, float]:
+    """Ramps first, the fastest of them before the others."""
+    rate = beside.search.get("deceleration")
+    return (not isinstance(rate, int | float), -float(rate) if isinstance(rate, int | float) else 0.0)
+
+
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """A key of a search beside the spec's own is written in its table, if that has it."""
+    for name, beside in settings(spec, Settings).beside.items():
+        if label.removeprefix(BESIDE).startswith(name) and label.startswith(BESIDE) and key[:1] == ("run",):
+            own = "speed_kmh" if key[1:2] == ("speed",) else str(key[1]) if len(key) > 1 else ""
+            if getattr(beside, own, None) is not None:
+                return ("test", "beside", name, own, *key[2:])
+    return key
 
 
 def quantities(

@@ -48,6 +48,8 @@ class Curve(_Table):
     unbalanced: float | None = Field(default=None, allow_inf_nan=False)
     """m/s2 in the plane of the rails, + outward: V2/R cos c - g sin c. This or `speed_kmh`."""
     speed_kmh: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
+    label: str | None = Field(default=None, min_length=1)
+    """Of its case; radius, cant and speed if absent."""
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:
@@ -113,7 +115,7 @@ def _runs(spec: Spec, vehicle: VehicleData, own: Settings, number: int, curve: C
     layout, length = _layout(own, curve)
     track = {**spec.track, "layout": layout, "length": length}
     found = expand(spec.model_copy(update={"run": run, "track": track}), vehicle)
-    label = f"R {curve.radius_m:g} m, {curve.cant_mm:g} mm, {speed * 3.6:.1f} km/h"
+    label = curve.label or f"R {curve.radius_m:g} m, {curve.cant_mm:g} mm, {speed * 3.6:.1f} km/h"
     named = spec.run.wheel_profile is not None
     return [
         stepped(Case(one, {**case.data, "label": one}), own.slow)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from lmap.errors import InputProblem, JudgementProblem, Problem
+from lmap.errors import InputProblem, JudgementProblem, KeyPath, Problem
 from lmap.procedures.base import CaseFigures, expand, settings
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
@@ -68,6 +68,16 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
             for case in alike
         ]
     return [Case(case.label, {**case.data, "label": case.label}) for case in found]
+
+
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """A key of the integrator is written in one table of a list."""
+    written = spec.run.rest.get("integrator")
+    if isinstance(written, list) and key[:2] == ("run", "integrator"):
+        for index, integrator in enumerate(written):
+            if label.startswith(_scheme(integrator)):
+                return ("run", "integrator", index, *key[2:])
+    return key
 
 
 def _scheme(integrator: Mapping[str, Any]) -> str:
@@ -136,7 +146,7 @@ def _settle_time(frame: pl.DataFrame, wheels: Sequence[str], band: float) -> flo
     force = frame.select(wheels).to_numpy()
     mean = force.mean(axis=0)
     outside = np.flatnonzero(np.any(np.abs(force - mean) > band * np.abs(mean), axis=1))
-    if not outside.size:
+    if not outside.size or outside[-1] == 0:
         raise JudgementProblem(
             f"the start moves no wheel force by more than {band:g} of its mean: nothing settles"
         )

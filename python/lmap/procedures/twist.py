@@ -53,16 +53,24 @@ class Settings(BaseModel):
     """Within the bogie's outer wheelbase; EN 14363: 7 - 5/2a per mille."""
     loops: list[Loop] = Field(min_length=1)
     steps: int = Field(ge=1, le=50)
-    """From level track to the prescribed twist; one more goes beyond, so that it has two branches."""
+    """From level track to the prescribed twist."""
+    beyond: float = Field(gt=0.0, le=1.0)
+    """Share by which one more step goes beyond it, so that the twist has two branches: as much as reverses friction."""
 
 
 SETTINGS = Settings
 
 
-def levels(steps: int) -> list[float]:
-    """Shares of the twist: up beyond 1, down beyond -1, up again."""
+def _path(steps: int) -> list[int]:
+    """Numbers of the levels: up to the one beyond the twist, down to the one beyond it on the other side, up again."""
     most = steps + 1
-    return [k / steps for k in (*range(most), *range(most, -most, -1), *range(-most, most + 1))]
+    return [*range(most), *range(most, -most, -1), *range(-most, most + 1)]
+
+
+def levels(test: Settings) -> list[float]:
+    """Shares of the twist along the path."""
+    beyond = {test.steps + 1: 1.0 + test.beyond, -test.steps - 1: -1.0 - test.beyond}
+    return [beyond.get(k, k / test.steps) for k in _path(test.steps)]
 
 
 def angles(spec: Spec, vehicle: VehicleData) -> dict[str, dict[str, float]]:
@@ -111,7 +119,7 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
             {
                 "kind": "displacement",
                 "coordinate": f"{axle}.track_phi",
-                "path": [level * turned.get(axle, 0.0) for level in levels(test.steps)],
+                "path": [level * turned.get(axle, 0.0) for level in levels(test)],
             }
             for axle in axles
         ]
@@ -132,8 +140,8 @@ def quantities(
     """The frames with unloading, branch by branch and averaged."""
     import polars as pl
 
-    steps = settings(spec, Settings).steps
-    shares = pl.Series("level", levels(steps))
+    test = settings(spec, Settings)
+    steps, shares = test.steps, pl.Series("level", levels(test))
     found = {}
     for label, frame in frames.items():
         if frame.height != len(shares):
@@ -159,7 +167,7 @@ def averaged(values: Sequence[float], steps: int) -> list[float]:
     rising = values[3 * most : 5 * most + 1]
     mean = [(a + b) / 2.0 for a, b in zip(falling, rising, strict=True)]
     within = {k: mean[min(max(k, -steps), steps) + most] for k in range(-most, most + 1)}
-    return [within[round(level * steps)] for level in levels(steps)]
+    return [within[k] for k in _path(steps)]
 
 
 def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData) -> list[Drawing]:

@@ -6,7 +6,7 @@ import copy
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -51,11 +51,29 @@ class VehicleData:
 
 @dataclass(frozen=True)
 class Case:
-    """One simulation. Complete but for the profiles' points until `with_profiles` puts them in."""
+    """One simulation.
+
+    Complete but for the profiles' points until `with_profiles` puts them in, and for measured tracks, which it names
+    by path and SHA-256.
+    """
 
     label: str
     """What varies within the spec: `anzr1_worn_1`, `23 km/h`."""
     data: Mapping[str, Any]
+    texts: Mapping[str, str] = field(default_factory=dict)
+    """Measured tracks as CSV, by the name of the file."""
+
+    @cached_property
+    def core_json(self) -> str:
+        """The same for the core, which opens no file: with the texts of the measured tracks in it."""
+        if not self.texts:
+            return self.json
+        data = copy.deepcopy(dict(self.data))
+        irregularity = data["track"]["irregularity"]
+        for entry in irregularity if isinstance(irregularity, list) else [irregularity]:
+            if entry.get("kind") == "measured" and entry.get("file") in self.texts:
+                entry["text"] = self.texts[entry["file"]]
+        return json.dumps(data, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
     @cached_property
     def json(self) -> str:
@@ -82,7 +100,7 @@ class Case:
     def with_profiles(self, profiles: Mapping[str, Any]) -> Case:
         """The case with the points of the profiles that it names in it."""
         needed = {name: profiles[name] for name in sorted(self.profile_names) if name in profiles}
-        return Case(self.label, {**self.data, "profiles": needed})
+        return Case(self.label, {**self.data, "profiles": needed}, self.texts)
 
 
 def build(*, label: str, vehicle: VehicleData, track: Mapping[str, Any], run: Mapping[str, Any]) -> Case:

@@ -64,10 +64,11 @@ impl Stand {
         let (rear, front) = places.fold((f64::MAX, f64::MIN), |(a, b), s| (a.min(s), b.max(s)));
         let centre = self.curve();
         for s in [rear, front] {
-            let here = [layout.curvature(s), layout.cant(s), layout.gradient(s)];
-            for (name, (a, b)) in
-                ["curvature, 1/m", "cant, rad", "gradient, rad"].into_iter().zip(here.into_iter().zip(centre))
-            {
+            let here = [layout.curvature(s), layout.cant(s), layout.gradient(s), layout.widening(s).0];
+            let [curvature, cant, gradient] = centre;
+            let centre = [curvature, cant, gradient, layout.widening(self.s).0];
+            let names = ["curvature, 1/m", "cant, rad", "gradient, rad", "widening, m"];
+            for (name, (a, b)) in names.into_iter().zip(here.into_iter().zip(centre)) {
                 if (a - b).abs() > SAME {
                     return Err(Error::input(
                         Fault::new(

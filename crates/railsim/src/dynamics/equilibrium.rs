@@ -30,6 +30,8 @@ const FIRST_RELAXATION: f64 = 1e-6;
 const INCREMENT: f64 = 1e-7;
 /// Of a singular value decomposition; far more than it takes.
 const MOST_SWEEPS: usize = 10_000;
+/// The same for what connections remember: a slider passes its limit by no more than its speed on the way times a millisecond.
+const MEMORY_INCREMENT: f64 = 1e-11;
 /// Share by which a full step of Newton's has to lower the residual (Armijo's rule).
 const SUFFICIENT: f64 = 0.1;
 
@@ -345,14 +347,17 @@ impl<'s, 'm, 'c> Problem<'s, 'm, 'c> {
         let n = self.unknowns.len();
         let mut jacobian = DMatrix::zeros(n, n);
         let (mut up, mut down) = (DVector::zeros(n), DVector::zeros(n));
+        let memory = self.system.model.map().memory();
         for j in 0..n {
             let u = self.unknowns[j];
-            self.shift(u, INCREMENT);
+            let remembered = matches!(u, Unknown::State(i) if memory.contains(&i));
+            let by = if remembered { MEMORY_INCREMENT } else { INCREMENT };
+            self.shift(u, by);
             self.residual(&mut up);
-            self.shift(u, -2.0 * INCREMENT);
+            self.shift(u, -2.0 * by);
             self.residual(&mut down);
-            self.shift(u, INCREMENT);
-            jacobian.set_column(j, &((&up - &down) / (2.0 * INCREMENT)));
+            self.shift(u, by);
+            jacobian.set_column(j, &((&up - &down) / (2.0 * by)));
         }
         jacobian
     }

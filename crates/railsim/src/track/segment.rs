@@ -11,6 +11,8 @@ use crate::error::{Fault, KeyPath};
 const MAX_CURVATURE: f64 = 0.1;
 /// Largest gradient that is accepted, rise per metre.
 const MAX_GRADIENT: f64 = 0.2;
+/// Longest passage that is accepted, m: its line is summed up in cells before the run.
+const MAX_PASSAGE: f64 = 10_000.0;
 /// Two segments that meet without a transition may differ by this much in cant (mm) and gradient: rounding.
 const SAME: f64 = 1e-9;
 
@@ -173,7 +175,10 @@ impl Segment {
     }
 
     fn faults(&self, at: &KeyPath, faults: &mut Vec<Fault>) {
-        require(faults, at.key("length"), self.length(), |l| l > 0.0, "above 0 m");
+        let passes = self.values().is_none();
+        let range = if passes { format!("above 0 m, at most {MAX_PASSAGE} m") } else { "above 0 m".into() };
+        let allowed = |l: f64| l > 0.0 && !(passes && l > MAX_PASSAGE);
+        require(faults, at.key("length"), self.length(), allowed, &range);
         if let Self::Curve(curve) = self {
             let range = format!("from -{MAX_CURVATURE} to {MAX_CURVATURE} 1/m");
             match (curve.curvature, curve.radius) {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::measured::Record;
 use super::psd::Realisation;
 use super::{Deviation, Irregularity, Shape};
 use crate::error::{Error, Fault, KeyPath, Result};
@@ -24,6 +25,7 @@ enum Part {
     Realisation(Realisation),
     /// The wave of height 1, and what that is on the four channels.
     Shape(Shape, [f64; 4]),
+    Record(Record),
 }
 
 impl DeviationField {
@@ -35,7 +37,7 @@ impl DeviationField {
     /// faults have no index.
     ///
     /// # Errors
-    /// Every fault at once, of every irregularity, of `fade_in` and `fade_start` (finite, not below 0, no start
+    /// Every fault at once, of every irregularity (a record that ends before the track), of `fade_in` and `fade_start` (finite, not below 0, no start
     /// without a length).
     pub fn new(
         written: &[Irregularity],
@@ -47,7 +49,13 @@ impl DeviationField {
         let mut faults = Vec::new();
         for (i, irregularity) in written.iter().enumerate() {
             let here = if written.len() == 1 { at.clone() } else { at.index(i) };
-            faults.extend(irregularity.faults(&here));
+            let own = irregularity.faults(&here);
+            if let Irregularity::Measured(measured) = irregularity
+                && own.is_empty()
+            {
+                faults.extend(measured.too_short(length, &here));
+            }
+            faults.extend(own);
         }
         let mut good = require(&mut faults, beside(at, "fade_in"), fade_in, |x| x >= 0.0, "0 m or more");
         good &= require(&mut faults, beside(at, "fade_start"), fade_start, |x| x >= 0.0, "0 m or more");
@@ -60,9 +68,11 @@ impl DeviationField {
         }
         let parts = written
             .iter()
-            .map(|irregularity| match irregularity {
-                Irregularity::Psd(psd) => Part::Realisation(Realisation::new(psd)),
-                Irregularity::Shape(shape) => Part::Shape(shape.clone(), shape.weights()),
+            .filter_map(|irregularity| match irregularity {
+                Irregularity::Psd(psd) => Some(Part::Realisation(Realisation::new(psd))),
+                Irregularity::Shape(shape) => Some(Part::Shape(shape.clone(), shape.weights())),
+                // What is no record has been refused above.
+                Irregularity::Measured(measured) => measured.record().ok().map(Part::Record),
             })
             .collect();
         Ok(Self { parts, length, fade_start, fade_in })
@@ -96,6 +106,11 @@ impl DeviationField {
             match part {
                 Part::Realisation(realisation) => {
                     for (sum, value) in sum.iter_mut().zip(realisation.at(s)) {
+                        *sum += value;
+                    }
+                }
+                Part::Record(record) => {
+                    for (sum, value) in sum.iter_mut().zip(record.at(s)) {
                         *sum += value;
                     }
                 }

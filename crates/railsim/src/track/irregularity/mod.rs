@@ -11,6 +11,7 @@
 //! the right rail is y + gauge/2, of the left one y - gauge/2.
 
 mod combine;
+mod measured;
 mod psd;
 mod shape;
 
@@ -21,7 +22,8 @@ use super::require;
 use crate::error::{Fault, KeyPath};
 
 pub use combine::DeviationField;
-pub use psd::{Form, GaugeSeries, Level, Psd, spectrum};
+pub use measured::Measured;
+pub use psd::{Density, Form, GaugeSeries, Level, Psd, spectrum};
 pub use shape::{Shape, ShapeChannel, Wave};
 
 /// Which of the four channels.
@@ -84,6 +86,8 @@ pub enum Irregularity {
     Psd(Psd),
     /// Waves of given height and length: humps, dips, kinks, joints, cyclic irregularities.
     Shape(Shape),
+    /// A record of a track, read by the caller.
+    Measured(Measured),
 }
 
 impl Irregularity {
@@ -91,7 +95,8 @@ impl Irregularity {
     #[must_use]
     pub fn examples() -> Vec<Self> {
         let psd = Psd::examples().into_iter().map(Self::Psd);
-        psd.chain(Shape::examples().into_iter().map(Self::Shape)).collect()
+        let measured = Measured::examples().into_iter().map(Self::Measured);
+        psd.chain(Shape::examples().into_iter().map(Self::Shape)).chain(measured).collect()
     }
 
     /// Everything that is wrong with it; `at` is the path of its table.
@@ -101,6 +106,7 @@ impl Irregularity {
         match self {
             Self::Psd(psd) => psd.faults(at, &mut faults),
             Self::Shape(shape) => shape.faults(at, &mut faults),
+            Self::Measured(measured) => measured.faults(at, &mut faults),
         }
         faults
     }

@@ -15,6 +15,7 @@
 //! - `fra_cutoff`: X. Lei, N. A. Noda, "Analyses of dynamic response of vehicle and track coupling system with random
 //!   irregularity of track vertical profile", Journal of Sound and Vibration 258 (2002) 147-165; constants as in the
 //!   public TTB-2D and STEM codes (Av, cut-off), Aa and the second cut-off of classes 1-5 from general knowledge.
+//! - `table`: points as written.
 //! - `erri`: ERRI B176 low and high level, constants as in the public German spectrum of VTCM_PYTHON.
 
 use std::f64::consts::TAU;
@@ -46,6 +47,8 @@ pub enum Form {
     FraHamidYang,
     /// ERRI B176, low or high level.
     Erri,
+    /// Points of frequency and density as written, `density` or `density_rad`.
+    Table,
 }
 
 /// Level of the ERRI spectra.
@@ -69,6 +72,83 @@ pub enum GaugeSeries {
     CrossLevel,
 }
 
+/// One-sided spectra of the channels as points [frequency, density], frequencies increasing; a channel without points is smooth.
+///
+/// Between the points density is a power of frequency: straight lines on logarithmic axes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Density {
+    /// Lateral.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lateral: Vec<[f64; 2]>,
+    /// Vertical.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vertical: Vec<[f64; 2]>,
+    /// Cross-level over 1.5 m.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cross_level: Vec<[f64; 2]>,
+    /// Gauge.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gauge: Vec<[f64; 2]>,
+}
+
+impl Density {
+    fn points(&self, channel: Channel) -> &[[f64; 2]] {
+        match channel {
+            Channel::Lateral => &self.lateral,
+            Channel::Vertical => &self.vertical,
+            Channel::CrossLevel => &self.cross_level,
+            Channel::Gauge => &self.gauge,
+        }
+    }
+
+    /// Density at a frequency in the units of the points; outside them that of the nearest one, without points 0.
+    fn at(&self, channel: Channel, frequency: f64) -> f64 {
+        let points = self.points(channel);
+        let next = points.partition_point(|p| p[0] <= frequency);
+        match (next.checked_sub(1).and_then(|i| points.get(i)), points.get(next)) {
+            (Some(&[f0, s0]), Some(&[f1, s1])) => s0 * (frequency / f0).powf((s1 / s0).ln() / (f1 / f0).ln()),
+            (Some(&[_, s]), None) | (None, Some(&[_, s])) => s,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// Every fault; `band` holds the frequencies asked for, in the units of the points.
+    fn faults(&self, band: [f64; 2], unit: &str, at: &KeyPath, faults: &mut Vec<Fault>) {
+        const NAMES: [&str; 4] = ["lateral", "vertical", "cross_level", "gauge"];
+        if Channel::ALL.iter().all(|c| self.points(*c).is_empty()) {
+            let allowed = "points [frequency, density] of lateral, vertical, cross_level or gauge";
+            faults.push(Fault::new(at.clone(), "no points", allowed));
+        }
+        for (channel, name) in Channel::ALL.into_iter().zip(NAMES) {
+            let points = self.points(channel);
+            let here = at.key(name);
+            let before = faults.len();
+            for (i, &[f, s]) in points.iter().enumerate() {
+                let at = here.index(i);
+                require(faults, at.index(0), f, |f| f > 0.0, &format!("above 0 {unit}"));
+                require(faults, at.index(1), s, |s| s > 0.0, &format!("above 0 m2/({unit})"));
+                if i > 0 && f <= points[i - 1][0] {
+                    let allowed = format!("above {}, the frequency before", points[i - 1][0]);
+                    faults.push(Fault::new(at.index(0), f.to_string(), allowed));
+                }
+            }
+            // Rounding of 1/wavelength, a hundredth of a millionth.
+            if let (Some(first), Some(last)) = (points.first(), points.last())
+                && faults.len() == before
+                && (first[0] > band[0] * (1.0 + 1e-8) || last[0] < band[1] * (1.0 - 1e-8))
+            {
+                let found = format!("points from {} to {} {unit}", first[0], last[0]);
+                let allowed = format!(
+                    "points that cover {:.6} to {:.6} {unit}, the band of wavelengths",
+                    band[0], band[1]
+                );
+                faults.push(Fault::new(here, found, allowed));
+            }
+        }
+    }
+}
+
 /// A realisation of a spectrum as written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -81,6 +161,12 @@ pub struct Psd {
     /// Level; with `form = "erri"` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<Level>,
+    /// `form = "table"`: points in cycles per metre and m2/(1/m). This or `density_rad`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<Density>,
+    /// `form = "table"`: points in rad/m and m2/(rad/m).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_rad: Option<Density>,
     /// Shortest and longest wavelength, m. The longest decides the amplitude: no default.
     pub wavelengths: [f64; 2],
     /// Seed.
@@ -124,7 +210,7 @@ const ERRI_A: [[f64; 3]; 2] = [[2.119e-7, 4.032e-7, 5.32e-8], [6.125e-7, 1.080e-
 const ERRI_OMEGA: [f64; 3] = [0.8246, 0.0206, 0.4380];
 
 /// One-sided spectral density of a channel in m2/(1/m) at `frequency` in cycles per metre. `grade` is the FRA class
-/// 1..=6, or 1 (low), 2 (high) for ERRI; outside that range the density is NaN.
+/// 1..=6, or 1 (low), 2 (high) for ERRI; outside that range, and of a table ([`Psd::spectrum`]), the density is NaN.
 ///
 /// `fra_hamid_yang` (phi in 1/m): lateral and vertical A phi2^2 (phi^2 + phi1^2)/(phi^4 (phi^2 + phi2^2)), cross-level
 /// and gauge A phi2^2/((phi^2 + phi1^2)(phi^2 + phi2^2)).
@@ -173,6 +259,7 @@ pub fn spectrum(form: Form, grade: usize, channel: Channel, frequency: f64) -> f
                 Channel::Gauge => ag * relative,
             }
         }
+        Form::Table => f64::NAN,
     }
 }
 
@@ -184,6 +271,8 @@ impl Psd {
             form,
             class: Some(class),
             level: None,
+            density: None,
+            density_rad: None,
             wavelengths: [1.5, 40.0],
             seed: 1,
             period: 1000.0,
@@ -202,7 +291,28 @@ impl Psd {
                 scale: 0.8,
                 ..fra(Form::Erri, 1, GaugeSeries::Independent)
             },
+            Self {
+                class: None,
+                density: Some(Density {
+                    vertical: vec![[0.02, 4e-4], [0.1, 6e-6], [0.7, 3e-9]],
+                    lateral: vec![[0.01, 1e-3], [0.7, 2e-9]],
+                    ..Density::default()
+                }),
+                ..fra(Form::Table, 1, GaugeSeries::Independent)
+            },
         ]
+    }
+
+    /// One-sided spectral density of a channel in m2/(1/m) at `frequency` in cycles per metre, without the scale; NaN where
+    /// what is written does not fit the form.
+    #[must_use]
+    pub fn spectrum(&self, channel: Channel, frequency: f64) -> f64 {
+        match (self.form, &self.density, &self.density_rad) {
+            (Form::Table, Some(density), None) => density.at(channel, frequency),
+            // Per rad/m: times 2 pi.
+            (Form::Table, None, Some(density)) => TAU * density.at(channel, TAU * frequency),
+            (form, ..) => self.grade().map_or(f64::NAN, |grade| spectrum(form, grade, channel, frequency)),
+        }
     }
 
     /// FRA class, or 1 low, 2 high; none where the written one does not fit the form.
@@ -219,29 +329,7 @@ impl Psd {
 
     /// Everything that is wrong with it; `at` is the path of its table.
     pub(super) fn faults(&self, at: &KeyPath, faults: &mut Vec<Fault>) {
-        let erri = self.form == Form::Erri;
-        match (erri, self.class) {
-            (false, None) => faults.push(Fault::new(at.key("class"), "nothing", "1 to 6 with an FRA form")),
-            (false, Some(class)) if !(1..=6).contains(&class) => {
-                faults.push(Fault::new(at.key("class"), class.to_string(), "1 (worst) to 6 (best)"));
-            }
-            (true, Some(class)) => {
-                let fault = Fault::new(at.key("class"), class.to_string(), "not with form = \"erri\"");
-                faults.push(fault.hint("level = \"low\" or \"high\""));
-            }
-            _ => {}
-        }
-        match (erri, self.level) {
-            (true, None) => {
-                let allowed = "\"low\" or \"high\" with form = \"erri\"";
-                faults.push(Fault::new(at.key("level"), "nothing", allowed));
-            }
-            (false, Some(_)) => {
-                let fault = Fault::new(at.key("level"), "a level", "only with form = \"erri\"");
-                faults.push(fault.hint("class = 1 to 6"));
-            }
-            _ => {}
-        }
+        self.grade_faults(at, faults);
         let [short, long] = self.wavelengths;
         let key = at.key("wavelengths");
         let mut good = require(faults, key.index(0), short, |w| w > 0.0, "above 0 m");
@@ -251,6 +339,7 @@ impl Psd {
             faults.push(fault.hint("turn them round"));
             good = false;
         }
+        self.table_faults(good, at, faults);
         let at_period = at.key("period");
         if require(faults, at_period.clone(), self.period, |p| p > 0.0, "above 0 m") && good {
             let nodes = self.period / self.cell();
@@ -264,6 +353,61 @@ impl Psd {
             }
         }
         scale_faults(self.scale, at, faults);
+    }
+
+    fn grade_faults(&self, at: &KeyPath, faults: &mut Vec<Fault>) {
+        let (erri, fra) =
+            (self.form == Form::Erri, matches!(self.form, Form::FraCutoff | Form::FraHamidYang));
+        match self.class {
+            None if fra => {
+                faults.push(Fault::new(at.key("class"), "nothing", "1 to 6 with an FRA form"));
+            }
+            Some(class) if fra && !(1..=6).contains(&class) => {
+                faults.push(Fault::new(at.key("class"), class.to_string(), "1 (worst) to 6 (best)"));
+            }
+            Some(class) if erri => {
+                let fault = Fault::new(at.key("class"), class.to_string(), "not with form = \"erri\"");
+                faults.push(fault.hint("level = \"low\" or \"high\""));
+            }
+            Some(class) if !fra => {
+                faults.push(Fault::new(at.key("class"), class.to_string(), "only with an FRA form"));
+            }
+            _ => {}
+        }
+        match self.level {
+            None if erri => {
+                let allowed = "\"low\" or \"high\" with form = \"erri\"";
+                faults.push(Fault::new(at.key("level"), "nothing", allowed));
+            }
+            Some(_) if !erri => {
+                let fault = Fault::new(at.key("level"), "a level", "only with form = \"erri\"");
+                faults.push(if fra { fault.hint("class = 1 to 6") } else { fault });
+            }
+            _ => {}
+        }
+    }
+
+    /// `density` and `density_rad`: one of them with a table, none without.
+    fn table_faults(&self, wavelengths_good: bool, at: &KeyPath, faults: &mut Vec<Fault>) {
+        let [short, long] = self.wavelengths;
+        let band = if wavelengths_good { [1.0 / long, 1.0 / short] } else { [f64::INFINITY, 0.0] };
+        let table = self.form == Form::Table;
+        if table && self.density.is_some() == self.density_rad.is_some() {
+            let found = if self.density.is_some() { "density and density_rad" } else { "nothing" };
+            let allowed = "points with form = \"table\": density (1/m) or density_rad (rad/m)";
+            faults.push(Fault::new(at.key("density"), found, allowed));
+            return;
+        }
+        for (key, density, factor, unit) in
+            [("density", &self.density, 1.0, "1/m"), ("density_rad", &self.density_rad, TAU, "rad/m")]
+        {
+            let Some(density) = density else { continue };
+            if table {
+                density.faults(band.map(|f| factor * f), unit, &at.key(key), faults);
+            } else {
+                faults.push(Fault::new(at.key(key), "points", "only with form = \"table\""));
+            }
+        }
     }
 
     fn cell(&self) -> f64 {
@@ -295,14 +439,13 @@ impl Realisation {
     pub fn new(psd: &Psd) -> Self {
         let count = ((psd.period / psd.cell()).ceil().clamp(4.0, MAX_NODES) as usize).next_power_of_two();
         let mut nodes = vec![[0.0; 8]; count];
-        let grade = psd.grade().unwrap_or(0);
         for channel in Channel::ALL {
             if channel == Channel::Gauge && psd.gauge == GaugeSeries::CrossLevel {
                 for node in &mut nodes {
                     (node[3], node[7]) = (node[2], node[6]);
                 }
             } else {
-                fill(&mut nodes, psd, grade, channel);
+                fill(&mut nodes, psd, channel);
             }
         }
         Self { period: psd.period, cell: psd.period / count as f64, nodes }
@@ -330,7 +473,7 @@ impl Realisation {
 }
 
 /// Writes one channel of the realisation and its slope into the table.
-fn fill(nodes: &mut [Node], psd: &Psd, grade: usize, channel: Channel) {
+fn fill(nodes: &mut [Node], psd: &Psd, channel: Channel) {
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&psd.seed.to_le_bytes());
     let mut random = ChaCha8Rng::from_seed(seed);
@@ -344,7 +487,7 @@ fn fill(nodes: &mut [Node], psd: &Psd, grade: usize, channel: Channel) {
             continue;
         }
         let frequency = k as f64 / psd.period;
-        let amplitude = psd.scale * (2.0 * spectrum(psd.form, grade, channel, frequency) / psd.period).sqrt();
+        let amplitude = psd.scale * (2.0 * psd.spectrum(channel, frequency) / psd.period).sqrt();
         let (sin, cos) = phase.sin_cos();
         let rate = TAU * frequency;
         values[k] = [amplitude * cos, amplitude * sin];

@@ -155,10 +155,25 @@ pub enum ShapeChannel {
 }
 
 impl ShapeChannel {
+    /// The channel of this name.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "lateral" => Self::Lateral,
+            "vertical" => Self::Vertical,
+            "cross_level" => Self::CrossLevel,
+            "gauge" => Self::Gauge,
+            "left_lateral" => Self::LeftLateral,
+            "right_lateral" => Self::RightLateral,
+            "left_vertical" => Self::LeftVertical,
+            "right_vertical" => Self::RightVertical,
+            _ => return None,
+        })
+    }
+
     /// What a written height of 1 is on the four channels, in the order of [`Channel::ALL`] (vertical: + down).
     ///
     /// With z of the rails z -+ cross_level/2 and y of the rails y -+ gauge/2, one rail moves the centre line by half.
-    fn weights(self) -> [f64; 4] {
+    pub(super) fn weights(self) -> [f64; 4] {
         match self {
             Self::Lateral => [1.0, 0.0, 0.0, 0.0],
             Self::Vertical => [0.0, -1.0, 0.0, 0.0],

@@ -1,0 +1,53 @@
+"""Parts of the static procedures that need no core."""
+
+from __future__ import annotations
+
+import pytest
+
+from lmap.procedures import sway, twist
+
+
+def settings(**other: object) -> twist.Settings:
+    written = {
+        "twist_body": "EN 14363",
+        "twist_bogie": "EN 14363",
+        "loops": ["axle"],
+        "steps": 2,
+        "beyond": 0.5,
+    }
+    return twist.Settings.model_validate(written | other)
+
+
+def test_the_path_of_a_twist_goes_beyond_to_both_sides_and_up_again() -> None:
+    up_and_down = [0, 0.5, 1, 1.5, 1, 0.5, 0, -0.5, -1, -1.5, -1, -0.5, 0, 0.5, 1, 1.5]
+    assert twist.levels(settings()) == up_and_down
+
+
+def test_friction_is_averaged_out() -> None:
+    """A line with a friction of 0.2 about it: rising branches above, falling ones below, the first in between."""
+    levels = twist.levels(settings())
+    values = [level + (0.2 if k >= 10 or k in (3, 9) else -0.2) for k, level in enumerate(levels)]
+    values[0:3] = levels[0:3]
+    mean = twist.averaged(values, 2)
+    for k, level in enumerate(levels):
+        assert mean[k] == pytest.approx(max(-1.0, min(1.0, level)))
+
+
+def test_the_steps_of_the_rig() -> None:
+    outline = {
+        "name": "x",
+        "title": "x",
+        "source": "assumed",
+        "static": [(1, -1), (1, -2)],
+        "kinematic": [(1, -1), (1, -2)],
+    }
+    test = sway.Settings.model_validate(
+        {
+            "where": "rig",
+            "outline": outline,
+            "load_case": [{"label": "x"}],
+            "cant_mm": 20.0,
+            "step_mm": 10.0,
+        }
+    )
+    assert sway.tilts(test) == [0, 0.01, 0.02, 0.01, 0, -0.01, -0.02, -0.01, 0]
