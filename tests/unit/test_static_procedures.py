@@ -65,7 +65,11 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.mark.parametrize(
     ("spec", "settings_", "message"),
     [
-        ("sway_rig", {"test.outline": "nowhere"}, 'test.outline: found "nowhere"; allowed: a reference outline'),
+        (
+            "sway_rig",
+            {"test.outline": "nowhere"},
+            'test.outline: found "nowhere"; allowed: a reference outline',
+        ),
         ("sway_rig", {"test.cant": 100.0}, "test.cant: found an unknown key.*cant_mm"),
         ("sway_curve", {"test.radius": -1.0}, "test.radius: found -1"),
         ("sway_curve", {"test.deficiencies_mm": []}, "allowed: radius and deficiencies_mm"),

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, directed, ends_along, not_negative};
 use crate::error::{Fault, KeyPath};
-use crate::math::table::Table;
 use crate::math::Vec3;
+use crate::math::table::Table;
 
 /// Which way a stop is met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]

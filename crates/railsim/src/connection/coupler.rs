@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, ends_along, not_negative};
 use crate::error::{Fault, KeyPath};
-use crate::math::table::Table;
 use crate::math::Vec3;
+use crate::math::table::Table;
 
 /// Coupler with draft gear.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

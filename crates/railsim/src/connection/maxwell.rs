@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, directed, ends_along, positive};
 use crate::error::{Fault, KeyPath};
-use crate::math::table::{Interpolation, Table};
 use crate::math::Vec3;
+use crate::math::table::{Interpolation, Table};
 
 /// Damper in series with a spring, along the line between two points or along an axis.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::along::{Characteristic, one_of};
 use super::{Along, ForceLaw, Mount, Relative, Wrench, directed, ends_along};
 use crate::error::{Fault, KeyPath};
-use crate::math::table::Table;
 use crate::math::Vec3;
+use crate::math::table::Table;
 
 /// Viscous damper between two points, along their line or along an axis.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
