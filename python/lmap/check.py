@@ -284,8 +284,9 @@ def write_page(path: Path, content: bytes) -> None:
 def write_report(acceptance: Acceptance, folder: Path) -> None:
     """Writes the report into a folder within `folder`, then moves it up file by file, each whole or not at all.
 
-    Within, not beside: `folder` may be a file system of its own, and what is above it not ours to write. An
-    interrupted check leaves what was there before, no folder where there was none. The page comes last.
+    Within, not beside: `folder` may be a file system of its own, and what is above it not ours to write. A
+    check that is interrupted before it is judged leaves what was there before, no folder where there was none. The page
+    comes last. Cases of an earlier check stay beside this one's.
     """
     from lmap.report import write_report as write
 

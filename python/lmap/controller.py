@@ -12,7 +12,6 @@ with the vehicle's own controllers. Such a run is the slow path: it calls Python
 from __future__ import annotations
 
 import importlib
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -83,8 +82,8 @@ def simulate(
 
 
 def _plain(value: Any) -> float | list[float]:
-    """A number or numbers; what is none becomes NaN, which the core refuses by name."""
+    """A number or numbers."""
     try:
         return [float(one) for one in value] if hasattr(value, "__iter__") else float(value)
     except (TypeError, ValueError):
-        return math.nan
+        raise TypeError(f"{value!r}, neither a number nor numbers") from None

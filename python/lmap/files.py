@@ -31,7 +31,7 @@ class Kind:
         return "/" in name or "\\" in name or name.endswith(self.suffix)
 
 
-OUTLINE = Kind("outline", "models/outlines", ".toml")
+OUTLINE = Kind("reference outline", "models/outlines", ".toml")
 PROFILE = Kind("profile", "models/profiles", ".csv")
 SPEC = Kind("spec", "specs", ".toml")
 TRACK = Kind("track", "models/tracks", ".toml")

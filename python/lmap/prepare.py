@@ -329,7 +329,6 @@ def _checked(
         return sources.locate(problem)
 
     known: dict[str, Channel] = {}
-    asked: set[str] = set()
     problems: list[Problem] = []
     asked: set[str] = set()
     for case in cases:

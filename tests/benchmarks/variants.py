@@ -21,7 +21,7 @@ import polars as pl
 def timed(jobs: int, variants: int, metres: float, folder: Path) -> tuple[float, bytes]:
     command = [sys.executable, "-m", "lmap", "sweep", "hunting", "--quiet", "--no-cache", "--jobs", str(jobs)]
     command += ["--set", f"track.length={metres}", "--set", "track.irregularity.period=50"]
-    command += ["--set", "run.wheel_profile=anzr1_worn_1", "--vary", "run.speed_kmh=80..120"]
+    command += ["--set", "run.wheel_profile=anzr1_worn_1", "--vary", "run.speed_kmh=100..130"]
     command += ["--samples", str(variants), "--out", str(folder)]
     begun = time.perf_counter()
     done = subprocess.run(command, capture_output=True, text=True, check=False)

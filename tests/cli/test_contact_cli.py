@@ -95,11 +95,12 @@ def test_the_page_stands_alone(run: Run, place: Path) -> None:
         "Contact points",
         "Creep curves",
         "Traction curve",
+        "Convergence with the grid",
     ):
         assert title in page
     head = page[: page.index("<script>")]
     assert "http" not in head.replace("http-equiv", "")
-    assert page.count('<figure class="plot"') == 7
+    assert page.count('<figure class="plot"') == 8
 
 
 def test_a_rail_where_the_wheel_belongs(message: Callable[..., str]) -> None:

@@ -25,6 +25,7 @@ def signal(x: npt.NDArray[np.float64], speed: float = 7.3) -> pl.DataFrame:
     return pl.DataFrame({"t": t, "s": speed * t, "x": x})
 
 
+@settings(deadline=None)
 @given(values, st.integers(1, 40))
 def test_sustained_is_the_brute_force_maximum_of_window_minima(
     x: npt.NDArray[np.float64], steps: int
@@ -33,6 +34,7 @@ def test_sustained_is_the_brute_force_maximum_of_window_minima(
     assert ours == max(x[i : i + steps + 1].min() for i in range(len(x) - steps))
 
 
+@settings(deadline=None)
 @given(values)
 def test_sustained_falls_as_the_window_grows(x: npt.NDArray[np.float64]) -> None:
     read = [Sustained(window_s=steps / RATE).read(signal(x)).value for steps in (1, 5, 20, 50)]
@@ -40,6 +42,7 @@ def test_sustained_falls_as_the_window_grows(x: npt.NDArray[np.float64]) -> None
     assert read[0] <= x.max()
 
 
+@settings(deadline=None)
 @given(values)
 def test_sustained_is_never_above_the_sliding_mean(x: npt.NDArray[np.float64]) -> None:
     frame = signal(x)
@@ -48,6 +51,7 @@ def test_sustained_is_never_above_the_sliding_mean(x: npt.NDArray[np.float64]) -
     assert held <= mean + 1e-9 * max(1.0, abs(mean))
 
 
+@settings(deadline=None)
 @given(values)
 def test_half_wave_peaks_are_the_largest_sizes_between_crossings(x: npt.NDArray[np.float64]) -> None:
     frame = signal(x)
@@ -118,6 +122,7 @@ def test_zero_phase_lowpass_of_a_reversed_signal_is_the_reversed_result(x: npt.N
     np.testing.assert_allclose(forward, back[::-1], atol=1e-9)
 
 
+@settings(deadline=None)
 @given(values)
 def test_max_abs_is_the_largest_size(x: npt.NDArray[np.float64]) -> None:
     assert MaxAbs().read(signal(x)).value == np.abs(x).max()

@@ -23,7 +23,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("spec",),
     ("view",),
     ("procedures",),
-    ("simulate", "contact", "execute"),
+    ("simulate", "contact", "controller", "execute"),
     ("analyse",),
     ("vehicle",),
     ("lint",),
@@ -39,7 +39,7 @@ CORE = "_railsim"
 TOP = ("__init__", "__main__")
 MAY_IMPORT_THE_CORE = ("toml",)
 """Everything else asks `toml.core()`, and only these do."""
-MAY_ASK_FOR_THE_CORE = ("toml", "vehicle", "contact", "simulate", "execute")
+MAY_ASK_FOR_THE_CORE = ("toml", "vehicle", "contact", "controller", "simulate", "execute")
 
 
 def sources() -> list[Path]:

@@ -1,9 +1,14 @@
-"""Parts of the static procedures that need no core."""
+"""Parts of the static procedures: paths, averages, bad input."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
+from lmap.errors import InputProblem
+from lmap.prepare import prepare
 from lmap.procedures import sway, twist
 
 
@@ -51,3 +56,35 @@ def test_the_steps_of_the_rig() -> None:
         }
     )
     assert sway.tilts(test) == [0, 0.01, 0.02, 0.01, 0, -0.01, -0.02, -0.01, 0]
+
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.needs_core
+@pytest.mark.parametrize(
+    ("spec", "settings_", "message"),
+    [
+        (
+            "sway_rig",
+            {"test.outline": "nowhere"},
+            'test.outline: found "nowhere"; allowed: a reference outline',
+        ),
+        ("sway_rig", {"test.cant": 100.0}, "test.cant: found an unknown key; allowed: .*cant_mm"),
+        ("sway_curve", {"test.radius": -1.0}, "test.radius: found -1"),
+        ("sway_curve", {"test.deficiencies_mm": []}, "allowed: radius and deficiencies_mm"),
+        ("heights", {"test.load_case": [{"label": "x", "spring_set": {"foo*": 0.01}}]}, 'found "foo\\*"'),
+        ("heights", {"test.load_case": [{"label": "x", "condition": "no"}]}, "a condition of the vehicle"),
+        ("twist", {"vehicle": "wagon2", "condition": "loaded"}, "wagon2"),
+        ("twist", {"run.speed_kmh": [1.0, 2.0]}, "allowed: one speed"),
+        ("twist", {"test.loops": ["all"]}, "test.loops"),
+        ("p2", {"test.dip_angle": -0.01}, "test.dip_angle"),
+        ("axle_loads", {"test.worn": 1.0}, "worn_diameter"),
+    ],
+)
+def test_bad_input_is_one_message_each(
+    spec: str, settings_: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    with pytest.raises(InputProblem, match=message):
+        prepare(ROOT / "specs" / f"{spec}.toml", settings_)

@@ -16,7 +16,12 @@ SPEC = Path(__file__).parents[2] / "specs" / "hunting.toml"
 
 def frames(store: Store, jobs: int, speeds: list[float]) -> dict[str, bytes]:
     """Files of frames by case, of a batch that shares its contact tables."""
-    settings = {"track.length": 30.0, "track.irregularity.period": 20.0, "track.fade_in": 5.0}
+    settings = {
+        "run.integrator.step": 0.0005,
+        "track.length": 30.0,
+        "track.irregularity.period": 20.0,
+        "track.fade_in": 5.0,
+    }
     specs = [prepare(SPEC, {**settings, "run.speed_kmh": speed}) for speed in speeds]
     judge_all(specs, store, jobs=jobs)
     return {path.stem: path.read_bytes() for path in sorted(store.folder.glob("*.parquet"))}

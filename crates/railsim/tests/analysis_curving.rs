@@ -353,6 +353,38 @@ fn a_rigid_vehicle_on_textbook_contact_transfers_its_load_exactly() {
     compare("load transfer", transfer, theirs, 2e-3);
 }
 
+/// Cones on knife-edged rails (Wickens 2003): weight W pushes a shifted wheelset back by W e/l0 per metre, e = l0 lambda/(l0 - r0 lambda), and turns a yawed one
+/// on by W l0 lambda per radian; without gravity stiffness neither.
+#[test]
+fn gravity_stiffness_of_a_coned_wheelset() {
+    let (l0, r0, weight) = (0.75, 0.46, 1500.0 * 9.80665);
+    for conicity in [0.02, 0.05, 0.1] {
+        let held = |on: bool, coordinate: &str, reaction: &str| -> f64 {
+            let mut value = textbook(&[0.0], 0.0, conicity, 1e4, [1e7, 9e6]);
+            value["track"]["layout"] = json!([]);
+            let hold = if coordinate == "ws1.y" { "ws1.psi" } else { "ws1.y" };
+            value["run"] = json!({
+                "kind": "quasi_static", "speed": 0.0, "friction": 0.4, "load_steps": 1, "hold": [hold],
+                "load": [{ "kind": "displacement", "coordinate": coordinate, "path": [0.0, 0.001] }],
+                "contact": {
+                    "kind": "textbook", "conicity": conicity, "f11": 1e7, "f22": 9e6, "stiffness": 1e10,
+                    "gravity_stiffness": on
+                }
+            });
+            let outcome = run(&common::case(&value), &Free).unwrap();
+            *common::column(&outcome.columns, &format!("{coordinate}.{reaction}")).last().unwrap()
+        };
+        let lateral = weight * conicity / (l0 - r0 * conicity);
+        // the slope of the normal is a tangent: 1 + lambda^2
+        let allowed = 2.0 * conicity * conicity + 1e-4;
+        compare("gravity stiffness, N/m", held(true, "ws1.y", "reaction") / 1e-3, lateral, allowed);
+        let yaw = held(true, "ws1.psi", "reaction_moment") / 1e-3;
+        compare("gravity stiffness in yaw, N m/rad", yaw, -weight * l0 * conicity, allowed);
+        assert!(held(false, "ws1.y", "reaction").abs() < 1e-6 * weight);
+        assert!(held(false, "ws1.psi", "reaction_moment").abs() < 1e-6 * weight);
+    }
+}
+
 /// A slider of 8 kN beside the secondary springs, bogies held: there and back again differ by twice the friction, and the way
 /// comes back to itself.
 #[test]

@@ -43,7 +43,15 @@ fn link(a: usize, b: usize, ends: [&RigidBody; 2], point: [f64; 3], k: [f64; 3],
 }
 
 fn model(bodies: Vec<RigidBody>, wheelsets: Vec<Wheelset>, links: Vec<Link>, gravity: f64) -> Model {
-    let book = Textbook { conicity: 0.0, f11: 0.0, f22: 0.0, f23: 0.0, stiffness: 1e-3, damping: 0.0 };
+    let book = Textbook {
+        conicity: 0.0,
+        f11: 0.0,
+        f22: 0.0,
+        f23: 0.0,
+        stiffness: 1e-3,
+        damping: 0.0,
+        gravity_stiffness: false,
+    };
     Model::new(
         bodies,
         wheelsets,

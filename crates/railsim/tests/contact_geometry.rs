@@ -4,9 +4,10 @@
 use proptest::prelude::*;
 use railsim::KeyPath;
 use railsim::contact::geometry_table::{
-    ContactPoint, GeometryTable, MAX_CONTACTS, OutOfTable, Placement, Zone,
+    ContactPoint, GeometryTable, MAX_CONTACTS, OutOfTable, PENETRATION, Placement, Zone,
 };
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
+use railsim::contact::search::{Pose, RailShift, Side, VIRTUAL};
 use std::sync::LazyLock;
 
 const PLACEMENT: Placement = Placement {
@@ -198,20 +199,88 @@ fn table_against_direct_search() {
 #[test]
 fn shares_of_one_contact_add_up_to_one() {
     let mut worst = 0.0_f64;
-    for table in [&*ANZR1, &*WORN_2, &*WORN_HIGH, &*S1002] {
+    for (name, table) in
+        [("anzr1", &*ANZR1), ("worn 2", &*WORN_2), ("worn high", &*WORN_HIGH), ("s1002", &*S1002)]
+    {
         for i in 0..=200 {
             let dy = -0.01 + 0.0001 * f64::from(i);
             let found = one(table, dy, 0.0, 1e-5);
             // contacts closer than 1.5 mm on the wheel are one contact
             let total: f64 = found.iter().map(|c| c.share).sum();
-            let separate = found.len() == 2 && (found[0].y_wheel - found[1].y_wheel).abs() > 1.5e-3;
+            let separate = found.windows(2).any(|c| (c[0].y_wheel - c[1].y_wheel).abs() > 1.5e-3);
             if !separate {
+                if (total - 1.0).abs() > worst {
+                    println!(
+                        "{name} at {:.1} mm: {total:.3} {:?}",
+                        1e3 * dy,
+                        found.iter().map(|c| (c.zone, c.share, 1e3 * c.y_wheel)).collect::<Vec<_>>()
+                    );
+                }
                 worst = worst.max((total - 1.0).abs());
             }
         }
     }
     println!("largest |sum of shares - 1|: {worst:.3}");
     assert!(worst < 0.05);
+}
+
+/// Which pairs touch in two places of a zone at once is found from the pair alone.
+#[test]
+fn zones_are_cut_where_a_pair_touches_twice_in_them() {
+    for (name, table, seconds) in [
+        ("anzr1", &*ANZR1, [false, false]),
+        ("anzr1_worn_2", &*WORN_2, [false, true]),
+        ("anzr1_worn_high", &*WORN_HIGH, [true, true]),
+        ("s1002", &*S1002, [true, false]),
+    ] {
+        println!("{name}: {:?}", table.seconds());
+        assert_eq!(table.seconds(), seconds, "{name}");
+    }
+}
+
+/// S1002 on 1:20, where two places of the tread and the flange root carry at once: three contacts where direct search has three patches. The
+/// averages are over one interpenetration, so what hardly touches is averaged too widely, and the second place lies partly within the blend of tread and flange: this is the
+/// pair that a table serves worst.
+#[test]
+fn three_contacts_at_once() {
+    let side = Side::new(&shipped("s1002", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap();
+    let approach = PENETRATION / VIRTUAL;
+    let load = |c: &ContactPoint| c.share * c.hertz * (c.penetration * c.angle.cos()).powf(1.5);
+    let mut threes = 0;
+    for i in 0..=60 {
+        let y = 0.005 + 5e-5 * f64::from(i);
+        let pose = Pose { y, ..Pose::default() };
+        let gap = side.gap(&pose, &RailShift::default()).unwrap();
+        let patches = side.patches(&Pose { z: gap + approach, ..pose }, &RailShift::default()).unwrap();
+        if patches.len() < 3 {
+            continue;
+        }
+        let mut out = [ContactPoint::default(); MAX_CONTACTS];
+        let n = S1002.contacts(y, 0.0, gap + approach, 0.0, &mut out).unwrap();
+        println!("y = {:.2} mm: search, table", 1e3 * y);
+        for p in &patches {
+            println!("    {:6.2} mm {:5.1} kN", 1e3 * p.centre.wheel[0], 1e-3 * p.normal);
+        }
+        for c in &out[..n] {
+            println!(
+                "        {:6.2} mm {:5.1} kN {:?} share {:.2}",
+                1e3 * c.y_wheel,
+                1e-3 * load(c),
+                c.zone,
+                c.share
+            );
+        }
+        let heaviest = patches.iter().max_by(|p, q| p.normal.total_cmp(&q.normal)).unwrap();
+        let main = out[..n].iter().max_by(|p, q| load(p).total_cmp(&load(q))).unwrap();
+        assert!((main.y_wheel - heaviest.centre.wheel[0]).abs() < 2e-3);
+        assert!((load(main) / heaviest.normal - 1.0).abs() < 0.3);
+        let total: f64 = out[..n].iter().map(load).sum();
+        let theirs: f64 = patches.iter().map(|p| p.normal).sum();
+        assert!((total / theirs - 1.0).abs() < 0.25, "{total} N, search {theirs}");
+        assert!(n >= 3);
+        threes += 1;
+    }
+    assert!(threes > 0);
 }
 
 #[test]
@@ -222,7 +291,7 @@ fn yaw_closes_the_flange_gap_to_second_order() {
     assert_eq!(ANZR1.contacts(dy, roll, gap[1] - 1e-4, 0.0, &mut out).unwrap(), 0);
     assert_eq!(ANZR1.contacts(dy, roll, gap[1] - 1e-4, 0.02, &mut out).unwrap(), 1);
     let flange = out[0];
-    assert_eq!(flange.zone, Zone::Flange);
+    assert!(flange.zone.is_flange());
     let closed = 0.5 * (0.46 + flange.z_wheel) * flange.angle.tan().powi(2) * 0.02 * 0.02;
     assert!((flange.penetration - (closed - 1e-4)).abs() < 0.05 * closed);
 }

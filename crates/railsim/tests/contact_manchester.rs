@@ -323,11 +323,16 @@ fn direct_search_under_load() {
     assert!(within[0] >= 20 && within[1] >= 18 && within[2] == 21 && within[3] >= 19);
 }
 
-/// The table averages at one interpenetration, 0.55 times CONTACT's approach here (12 um, 10 kN).
+/// The table averages at one interpenetration, [`Placement::penetration_under`] the 10 kN of this case (12 um); beside it at the default, which is that of 40 kN.
 #[test]
 fn table_under_load() {
     let (wheel, rail) = profiles();
-    let table = GeometryTable::build_at(&wheel, &rail, &PLACEMENT, 12e-6).unwrap();
+    let penetration = PLACEMENT.penetration_under(LOAD);
+    println!("penetration {:.2} um", 1e6 * penetration);
+    let table = GeometryTable::build_at(&wheel, &rail, &PLACEMENT, penetration).unwrap();
     let within = judge("table", |row| by_table(&table, row));
     assert!(within[0] >= 20 && within[1] >= 18 && within[2] == 21 && within[3] >= 19);
+    let table = GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap();
+    let within = judge("table at the default of 30 um", |row| by_table(&table, row));
+    println!("at the default: {within:?}");
 }

@@ -315,22 +315,56 @@ proptest! {
         y in -0.03f64..0.03,
         roll in -0.02f64..0.02,
     ) {
-        let walk = |steps: &[f64], from: f64, bowl: f64| -> Vec<[f64; 2]> {
-            let mut z = 0.0;
-            steps.iter().enumerate().map(|(i, step)| {
-                let y = from + 2e-3 * i as f64;
-                z += 1e-3 * step;
-                [y, z + bowl * y * y]
-            }).collect()
-        };
-        let wheel = Profile::new(&walk(&steps, -0.05, 5.0), ProfileKind::Wheel, &KeyPath::of("w"));
-        let rail = Profile::new(&walk(&heads, -0.04, 10.0), ProfileKind::Rail, &KeyPath::of("r"));
-        if let (Ok(wheel), Ok(rail)) = (wheel, rail)
-            && let Ok(side) = Side::new(&wheel, &rail, &Placement { gauge_point_depth: 0.01, ..PLACEMENT })
+        if let Some((wheel, rail, placement)) = walks(&steps, &heads)
+            && let Ok(side) = Side::new(&wheel, &rail, &placement)
         {
             let pose = Pose { y, roll, ..Pose::default() };
             let _ = side.closest(&pose, &STILL);
             let _ = side.press(&pose, &STILL, 5e4);
         }
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// And every such pair has a table, whose contacts are sane or refused, however often it touches at once.
+    #[test]
+    fn any_profile_has_a_table(
+        steps in proptest::collection::vec(-1.0f64..1.0, 40),
+        heads in proptest::collection::vec(-1.0f64..1.0, 40),
+        places in proptest::collection::vec((-0.021f64..0.021, -0.021f64..0.021, 0.0f64..1e-3), 50),
+    ) {
+        if let Some((wheel, rail, placement)) = walks(&steps, &heads)
+            && let Ok(table) = GeometryTable::build(&wheel, &rail, &placement)
+        {
+            for (dy, roll, depth) in places {
+                let mut out = [ContactPoint::default(); MAX_CONTACTS];
+                let Ok(gap) = table.gap(dy, roll) else { continue };
+                let n = table.contacts(dy, roll, gap[0].min(gap[1]) + depth, 0.01, &mut out).unwrap_or(0);
+                for c in &out[..n] {
+                    prop_assert!(c.share > 0.0 && c.share < 1.0 + 1e-9 && c.hertz > 0.0 && c.angle.is_finite());
+                }
+            }
+        }
+    }
+}
+
+/// A wheel and a rail of random walks, where they make profiles.
+fn walks(steps: &[f64], heads: &[f64]) -> Option<(Profile, Profile, Placement)> {
+    let walk = |steps: &[f64], from: f64, bowl: f64| -> Vec<[f64; 2]> {
+        let mut z = 0.0;
+        steps
+            .iter()
+            .enumerate()
+            .map(|(i, step)| {
+                let y = from + 2e-3 * i as f64;
+                z += 1e-3 * step;
+                [y, z + bowl * y * y]
+            })
+            .collect()
+    };
+    let wheel = Profile::new(&walk(steps, -0.05, 5.0), ProfileKind::Wheel, &KeyPath::of("w")).ok()?;
+    let rail = Profile::new(&walk(heads, -0.04, 10.0), ProfileKind::Rail, &KeyPath::of("r")).ok()?;
+    Some((wheel, rail, Placement { gauge_point_depth: 0.01, ..PLACEMENT }))
 }

@@ -259,9 +259,9 @@ fn all_faults_are_said_at_once_and_each_once() {
              \"maxwell\", \"point_damper\", \"point_spring\", \"shear_spring\", \"traction_rod\" \
              (did you mean point_spring?)",
             "67: vehicle.contact.poisson: found true; allowed: a number >= 0 and < 0.5",
-            "3: vehicle.titel: found an unknown key; allowed: body, condition, connection, contact, design_condition, \
-             design_speed_kmh, dynamic_brake, equipment, include, load_case, name, outline, parameters, sensor, \
-             shape, speed_hold, template, title, track, traction, use, wheel_profile, wheelset (did you mean title?)",
+            "3: vehicle.titel: found an unknown key; allowed: air_brake, body, condition, connection, contact, \
+             design_condition, design_speed_kmh, dynamic_brake, equipment, gap, include, load_case, name, outline, \
+             parameters, parking_brake, sensor, shape, speed_hold, template, title, track, traction, use, wheel_profile, wheelset (did you mean title?)",
             "44: vehicle.template.axle.wheelset[0].mass: found 0 (from $axle.mass); allowed: a number > 0 kg",
             "?: vehicle.title: found nothing; allowed: a text",
         ]
@@ -341,7 +341,7 @@ fn case() -> Value {
 /// (pointer, value put there, messages)
 fn cases() -> Vec<(&'static str, Value, &'static str)> {
     vec![
-        ("/run/speed", json!(0), "run.speed: found 0; allowed: a number > 0 m/s"),
+        ("/run/speed", json!(0), "run.speed: found 0; allowed: a number > 0 m/s, or 0 with run.drive"),
         (
             "/run/friction",
             json!(1.6),
@@ -382,7 +382,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/kind",
             json!("tiem"),
-            "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\", \"lint\" (did you mean time?)",
+            "run.kind: found \"tiem\"; allowed: \"time\", \"equilibrium\", \"quasi_static\", \"modal\", \"critical_speed\", \"air_brake\", \"lint\" (did you mean time?)",
         ),
         ("/track/length", json!(-1.5), "track.length: found -1.5; allowed: a number > 0 and <= 1000000.0 m"),
         (
@@ -472,8 +472,8 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/spede",
             json!(3),
-            "run.spede: found an unknown key; allowed: contact, creep, disturbance, friction, gravity, hold, integrator, \
-         kind, load, load_steps, output_step, place, search, speed, speeds, wheel_profile (did you mean speed?)",
+            "run.spede: found an unknown key; allowed: contact, creep, disturbance, drive, friction, gravity, hold, \
+         integrator, kind, load, load_steps, output_step, place, search, speed, speeds, start, train, wheel_profile (did you mean speed?)",
         ),
     ]
 }

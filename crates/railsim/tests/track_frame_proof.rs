@@ -38,6 +38,7 @@ fn free_body() -> Model {
         f23: 0.0,
         stiffness: 0.0,
         damping: 0.0,
+        gravity_stiffness: false,
     });
     Model::new(
         vec![body],

@@ -2,6 +2,8 @@
 //!
 //! The comparisons with the paper and with hand formulas stand in `tests/validation/test_traction.py`.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 mod common;
 
 use common::{case, coco134, column};

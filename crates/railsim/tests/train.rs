@@ -1,5 +1,7 @@
 //! Longitudinal train dynamics against momentum, energy and hand formulas.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use railsim::KeyPath;
 use railsim::equipment::effort::davis;
 use railsim::equipment::train::{WAGON, Wagons};

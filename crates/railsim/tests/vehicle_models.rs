@@ -229,8 +229,15 @@ fn suspended_wheelset_critical_speed() {
         let mut model = compile::model(&common::case(&value)).unwrap();
         model.support = None;
         let (f11, f22, conicity) = (1e7, 9e6, 0.1);
-        model.contact =
-            Contact::Textbook(Textbook { conicity, f11, f22, f23: 0.0, stiffness: 1e9, damping: 0.0 });
+        model.contact = Contact::Textbook(Textbook {
+            conicity,
+            f11,
+            f22,
+            f23: 0.0,
+            stiffness: 1e9,
+            damping: 0.0,
+            gravity_stiffness: false,
+        });
         let map = model.map();
         let (q, u) = (map.q(1).start, map.u(1).start);
         let states = [q + 1, q + 5, u + 1, u + 5]; // lateral and yaw: vertical, roll and pitch are held

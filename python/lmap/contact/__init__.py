@@ -15,6 +15,7 @@ everything that is refused.
 from __future__ import annotations
 
 from lmap.contact.case import equivalent_conicity
+from lmap.contact.convergence import GRIDDED, Convergence, grid_convergence
 from lmap.contact.laws import LAWS, CreepForces, creep_forces
 from lmap.contact.pair import METHODS, Contacts, Pair, curve_conicity
 from lmap.contact.patch import Ellipse, Kalker, NonElliptic, hertz, kalker, non_elliptic
@@ -30,9 +31,11 @@ from lmap.contact.profile import (
 )
 
 __all__ = [
+    "GRIDDED",
     "LAWS",
     "METHODS",
     "Contacts",
+    "Convergence",
     "CreepForces",
     "Ellipse",
     "Finding",
@@ -44,6 +47,7 @@ __all__ = [
     "creep_forces",
     "curve_conicity",
     "equivalent_conicity",
+    "grid_convergence",
     "hertz",
     "kalker",
     "non_elliptic",

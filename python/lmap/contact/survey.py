@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from lmap.contact.convergence import GRIDDED, Convergence, grid_convergence
 from lmap.contact.core import POSITIVE, Array, refuse
 from lmap.contact.laws import CreepForces, creep_forces, law_of
 from lmap.contact.pair import FLANGE, Contacts, Pair
@@ -73,6 +74,8 @@ class Survey:
     traction_creepage: Array
     traction: Mapping[str, Array]
     """-Fx/N over `traction_creepage`, by rail condition or law."""
+    convergence: tuple[Convergence, ...]
+    """FASTSIM, FaStrip and every other law asked for that has a grid, in the patch of the right wheel."""
 
     @property
     def centred(self) -> Contacts:
@@ -137,6 +140,7 @@ def survey(
         traction=_traction(
             right, traction_creepage, pair, speed, friction, written[laws[0]] if laws else None
         ),
+        convergence=_convergence(laws, right, friction, pair),
     )
 
 
@@ -187,6 +191,16 @@ def _curve(
         longitudinal=-_forces(law, patch, mu, pair, creepage).fx / n,
         lateral=-_forces(law, patch, mu, pair, 0.0, creepage).fy / n,
         spin=-_forces(law, patch, mu, pair, 0.0, 0.0, spin).fy / n,
+    )
+
+
+def _convergence(laws: Sequence[str], patch: Contacts, mu: float, pair: Pair) -> tuple[Convergence, ...]:
+    a, b, n = (float(values[0]) for values in (patch.a, patch.b, patch.normal))
+    shear_modulus = pair.youngs_modulus / (2.0 * (1.0 + pair.poisson))
+    names = dict.fromkeys(["fastsim", "fastrip", *(law for law in laws if law in GRIDDED)])
+    return tuple(
+        grid_convergence(name, a=a, b=b, n=n, mu=mu, shear_modulus=shear_modulus, poisson=pair.poisson)
+        for name in names
     )
 
 

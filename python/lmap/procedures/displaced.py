@@ -97,17 +97,14 @@ def set_loads(load: LoadCase, model: Model, rows: int) -> list[dict[str, Any]]:
 
 
 def _vertical_stiffness(connection: Connection) -> float:
-    written = connection.values.get("stiffness")
-    if (
-        isinstance(written, list)
-        and len(written) in (3, 6)
-        and all(isinstance(k, int | float) for k in written)
-    ):
-        return float(written[2])
+    written = connection.values.get("axial" if connection.kind == "shear_spring" else "stiffness")
+    if isinstance(written, list) and len(written) in (3, 6):
+        written = written[2]
+    if isinstance(written, int | float) and connection.kind in ("bushing", "shear_spring"):
+        return float(written)
     found = f'"{connection.name}", a {connection.kind}'
-    raise InputProblem(
-        Problem(key=("test", "load_case"), found=found, allowed="bushings with three stiffnesses")
-    )
+    allowed = "springs with one vertical stiffness: bushing, shear_spring"
+    raise InputProblem(Problem(key=("test", "load_case"), found=found, allowed=allowed))
 
 
 def section(model: Model) -> Points:

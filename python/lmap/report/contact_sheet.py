@@ -109,6 +109,12 @@ def document(survey: Survey) -> dict[str, Any]:
                 }
                 for curve in survey.curves
             },
+            "convergence": {
+                found.law: {
+                    name: getattr(found, name).tolist() for name in ("grids", "without_spin", "with_spin")
+                }
+                for found in survey.convergence
+            },
         },
         "findings": {
             profile.name: [{"severity": f.severity, "code": f.code, "text": f.text} for f in profile.findings]
@@ -173,6 +179,7 @@ def sheet(survey: Survey, version: str) -> Sheet:
             _patch(survey),
             _creep(survey),
             _traction(survey),
+            _convergence(survey),
             _profiles(survey),
         ],
         messages=() if findings else ("Nothing remarkable about the points of either profile.",),
@@ -415,6 +422,29 @@ def _traction(survey: Survey) -> tuple[str, str, list[Plot]]:
         "factors and falling friction of Spiryagin et al. (2013), Table 4."
     )
     return "Traction curve", caption, [Plot("longitudinal creepage (%)", "-Fx / N (1)", lines)]
+
+
+def _convergence(survey: Survey) -> tuple[str, str, list[Plot]]:
+    lines = [
+        Line(
+            f"{found.law}, {what}",
+            found.grids,
+            getattr(found, name),
+            str(k + 1),
+            mode="lines+markers",
+            dash=dash,
+            hover="%{x} x %{x}: %{y:.4f}<extra>" + f"{found.law}, {what}</extra>",
+        )
+        for k, found in enumerate(survey.convergence)
+        for name, what, dash in (("without_spin", "no spin", "solid"), ("with_spin", "spin", "dash"))
+    ]
+    caption = (
+        "Largest distance of the creep force from that of a grid of 200 x 200 over 20 creepages from stick to full "
+        "slip in five directions, without spin and with two spins each; patch of the right wheel. Spin that turns the "
+        "stress from one element to the next settles slowest; runs take 10 x 10 unless told otherwise."
+    )
+    titles = ("elements along and across (1)", "distance / mu N (1)")
+    return "Convergence with the grid", caption, [Plot(*titles, lines, log=True)]
 
 
 def _profiles(survey: Survey) -> tuple[str, str, list[Plot]]:

@@ -3,7 +3,7 @@
     out/index.html  verdicts.json  junit.xml  cases/<hash>.json  cases/<hash>.parquet  view-<id>.html
 
 The page works without a network: plotly.js, style and data are inside. Each file is written under a temporary
-name and then renamed, so that a reader never meets half a file; `verdicts.json` comes last.
+name and then renamed, so that a reader never meets half a file; the page comes last.
 """
 
 from __future__ import annotations

@@ -64,6 +64,8 @@ class Plot:
     y_range: tuple[float, float] | None = None
     equal: bool = False
     """One length on both axes."""
+    log: bool = False
+    """Both axes logarithmic."""
     y_down: bool = False
     """The vertical axis points down."""
     height: int = 340
@@ -145,6 +147,8 @@ def plotted(plot: Plot) -> dict[str, Any]:
         x["range"] = list(plot.x_range)
     if plot.y_range is not None:
         y["range"] = list(plot.y_range)
+    if plot.log:
+        x["type"] = y["type"] = "log"
     if plot.equal:
         y |= {"scaleanchor": "x", "scaleratio": 1}
     if plot.y_down:

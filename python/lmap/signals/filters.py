@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import polars as pl
 from pydantic import Field, model_validator
@@ -78,8 +79,6 @@ class Lowpass(_Butterworth):
 
     def apply(self, signal: pl.DataFrame) -> pl.DataFrame:
         """The filtered signal without its two ends."""
-        from scipy.signal import butter
-
         rate = self._rate(signal)
         raised = _HALF_POWER ** (-1.0 / self.order) if self.zero_phase else 1.0
         corner = rate / math.pi * math.atan(raised * math.tan(math.pi * self.cutoff_hz / rate))
@@ -87,7 +86,7 @@ class Lowpass(_Butterworth):
             raise JudgementProblem(
                 f"a cut-off of {self.cutoff_hz:g} Hz is too high for {rate:.4g} samples per second"
             )
-        sections = butter(self._poles, corner, btype="low", output="sos", fs=rate)
+        sections = _designed(self._poles, "low", (corner,), rate)
         return self._run(signal, sections, rate, _padding(sections))
 
 
@@ -115,8 +114,6 @@ class Bandpass(_Butterworth):
         return self._between(signal, self.low_hz, self.high_hz)
 
     def _between(self, signal: pl.DataFrame, low_hz: float, high_hz: float) -> pl.DataFrame:
-        from scipy.signal import butter
-
         rate = self._rate(signal)
         if high_hz >= rate / 2.0:
             raise JudgementProblem(
@@ -125,8 +122,8 @@ class Bandpass(_Butterworth):
         low, high = (math.tan(math.pi * f / rate) for f in (low_hz, high_hz))
         width = (high - low) * (_HALF_POWER ** (-1.0 / self.order) if self.zero_phase else 1.0)
         upper = (width + math.sqrt(width**2 + 4.0 * low * high)) / 2.0
-        corners = [rate / math.pi * math.atan(x) for x in (low * high / upper, upper)]
-        sections = butter(self._poles, corners, btype="band", output="sos", fs=rate)
+        low_corner, high_corner = (rate / math.pi * math.atan(x) for x in (low * high / upper, upper))
+        sections = _designed(self._poles, "band", (low_corner, high_corner), rate)
         return self._run(signal, sections, rate, max(_padding(sections), round(2.0 * rate / low_hz)))
 
 
@@ -167,6 +164,14 @@ class BandpassDominant(Bandpass):
                 f"no line of the spectrum lies between {self.low_hz:g} and {self.high_hz:g} Hz"
             )
         return float(frequency[inside][power[inside].argmax()])
+
+
+@functools.lru_cache(maxsize=64)
+def _designed(poles: int, kind: Literal["low", "band"], corners: tuple[float, ...], rate: float) -> Any:
+    """Second-order sections; a criterion asks for the same ones for every signal and case."""
+    from scipy.signal import butter
+
+    return butter(poles, corners if len(corners) > 1 else corners[0], btype=kind, output="sos", fs=rate)
 
 
 def _padding(sections: Any) -> int:

@@ -80,9 +80,15 @@ class _Windowed(Windowed, Statistic):
     """A statistic over a sliding window."""
 
     def _largest(self, curve: pl.DataFrame) -> Reading:
-        best = curve.row(_arg_max(curve), named=True)
+        t, s, x = (curve.get_column(name).to_numpy() for name in ("t", "s", "x"))
+        best = int(x.argmax())
         return Reading(
-            best["x"], best["t"], best["s"], self.window_s, self.window_m, curve=curve.select("t", "x")
+            float(x[best]),
+            float(t[best]),
+            float(s[best]),
+            self.window_s,
+            self.window_m,
+            curve=curve.select("t", "x"),
         )
 
 

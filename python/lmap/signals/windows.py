@@ -33,20 +33,22 @@ def slide(
     A window ends at every sample, or with `step` at the first sample after every so many s or m. One that holds a
     single sample says nothing about a stretch and is refused.
     """
-    column = signal.get_column(over)
+    at = signal.get_column(over).to_numpy()
     unit = "s" if over == "t" else "m"
-    if not column.is_sorted():
+    gaps = np.diff(at)
+    if bool((gaps < 0.0).any()):
         raise JudgementProblem(f"{over} goes back, so a window of {length:g} {unit} has no meaning")
-    span = float(column[-1]) - float(column[0])
+    span = float(at[-1] - at[0])
     ticks = round(length * _TICKS)
     if round(span * _TICKS) < ticks:
         raise JudgementProblem(
             f"the record of {span:.4g} {unit} is shorter than the window of {length:g} {unit}"
         )
-    if np.diff(column.to_numpy()).max(initial=0.0) > length * (1.0 + 1e-9):
+    if gaps.max(initial=0.0) > length * (1.0 + 1e-9):
         raise JudgementProblem(
             f"a window of {length:g} {unit} holds less than two samples: set run.output_step lower"
         )
+    tick = np.rint((at - at[0]) * _TICKS).astype(np.int64)
     other = "s" if over == "t" else "t"
     rolling = {
         "min": pl.col("x").rolling_min_by("tick", f"{ticks}i", closed="both"),
@@ -54,17 +56,16 @@ def slide(
         "mean": pl.col("x").rolling_mean_by("tick", f"{ticks}i", closed="both"),
         "std": pl.col("x").rolling_std_by("tick", f"{ticks}i", closed="both", ddof=0),
     }[function]
-    middle = pl.col(other).rolling_mean_by("tick", f"{ticks}i", closed="both").alias(other)
-    windows = (
-        signal.with_columns(tick=((pl.col(over) - pl.col(over).first()) * _TICKS).round().cast(pl.Int64))
-        .with_columns(rolling.alias("x"), middle)
-        .filter(pl.col("tick") >= ticks)
-        .with_columns(pl.col(over) - length / 2.0)
-    )
+    middle = pl.col(other).rolling_mean_by("tick", f"{ticks}i", closed="both")
+    rolled = pl.DataFrame(
+        {"tick": tick, other: signal.get_column(other), "x": signal.get_column("x")}
+    ).select(rolling, middle)
+    full = tick >= ticks
     if step is not None:
-        number = (pl.col("tick") - ticks) // max(1, round(step * _TICKS))
-        windows = windows.filter(number.diff().fill_null(1) > 0)
-    return windows.select("t", "s", "x")
+        number = (tick - ticks) // max(1, round(step * _TICKS))
+        full &= np.diff(number, prepend=-1) > 0
+    found = {over: at - length / 2.0, **{name: rolled.get_column(name).to_numpy() for name in (other, "x")}}
+    return pl.DataFrame({name: found[name][full] for name in ("t", "s", "x")})
 
 
 class Windowed(Link):

@@ -14,6 +14,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    PlainSerializer,
     ValidatorFunctionWrapHandler,
     WrapValidator,
     model_validator,
@@ -108,7 +109,10 @@ class RunPart(BaseModel):
         list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
     ] = None
     friction: Annotated[
-        float | None, Field(ge=0.0, allow_inf_nan=False, strict=True), WrapValidator(_friction)
+        float | None,
+        Field(ge=0.0, allow_inf_nan=False, strict=True),
+        WrapValidator(_friction),
+        PlainSerializer(lambda value: value, return_type=Any),
     ] = None
 
     @model_validator(mode="after")

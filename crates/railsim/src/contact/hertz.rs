@@ -31,39 +31,37 @@ pub fn effective_modulus(youngs_modulus: f64, poisson: f64) -> f64 {
     youngs_modulus / (2.0 * (1.0 - poisson * poisson))
 }
 
-/// Ratio larger/smaller relative curvature of an ellipse with axis ratio k' = shorter/longer: B/(k'^2 D).
-fn curvature_ratio(k_complementary: f64) -> f64 {
+/// ln of the ratio larger/smaller relative curvature B/(k'^2 D) of an ellipse with axis ratio k' = shorter/longer, and its slope over ln k'.
+///
+/// With X = k^2 B and Y = k^2 D, dX/dk = k K and dY/dk = k E/k'^2.
+fn curvature_ratio(k_complementary: f64) -> (f64, f64) {
+    let kc2 = k_complementary * k_complementary;
+    let k2 = (1.0 - k_complementary) * (1.0 + k_complementary);
     let c = elliptic::complete(k_complementary);
-    c.B / (k_complementary * k_complementary * c.D)
+    // a circle's is -3/2: nothing is left of the difference there
+    let slope = if k2 < 1e-9 { -1.5 } else { (c.E / c.D - kc2 * c.K / c.B) / k2 - 2.0 };
+    ((c.B / (kc2 * c.D)).ln(), slope)
 }
 
 /// Axis ratio k' (shorter/longer, 0 < k' <= 1) of the ellipse for a curvature ratio rho >= 1 (larger/smaller).
 ///
-/// Newton in logarithms from k' = rho^(-2/3) (which is right to some 5 % everywhere), with the slope by a secant. Converged to 1e-13.
+/// Newton in logarithms, from a rational function of ln rho that is right to 5e-4 up to rho = 1e6. A step below 1e-7 leaves an error of its square.
 #[must_use]
 pub fn axis_ratio(rho: f64) -> f64 {
     if rho <= 1.0 {
         return 1.0;
     }
-    let target = rho.ln();
-    let mut u = -2.0 / 3.0 * target; // ln k'
-    let mut previous: Option<(f64, f64)> = None;
+    let t = rho.ln();
+    let start =
+        -t * (0.663_443 + t * (0.197_767 + t * 0.024_139_5)) / (1.0 + t * (0.287_207 + t * 0.046_658_4));
+    let mut u = start; // ln k'
     for _ in 0..40 {
-        let residual = curvature_ratio(u.exp().min(1.0)).ln() - target;
-        if residual.abs() < 1e-13 {
-            break;
-        }
-        // d ln(ratio)/d ln k' lies between -1.5 (circle) and -2 (slender): -1.7 starts the secant.
-        let slope = match previous {
-            Some((u0, r0)) if (u - u0).abs() > 1e-13 => ((residual - r0) / (u - u0)).clamp(-3.0, -1.0),
-            _ => -1.7,
-        };
-        previous = Some((u, residual));
-        let step = -residual / slope;
-        if step.abs() < 1e-14 {
-            break;
-        }
+        let (ratio, slope) = curvature_ratio(u.exp().min(1.0));
+        let step = (t - ratio) / slope;
         u = (u + step).min(0.0);
+        if step.abs() < 1e-7 {
+            break;
+        }
     }
     u.exp()
 }
@@ -123,7 +121,7 @@ mod tests {
         #[test]
         fn axis_ratio_inverts_the_curvature_ratio(log_rho in 1e-6f64..14.0) {
             let rho = log_rho.exp();
-            let back = curvature_ratio(axis_ratio(rho));
+            let back = curvature_ratio(axis_ratio(rho)).0.exp();
             prop_assert!((back / rho - 1.0).abs() < 1e-10, "rho {} back {}", rho, back);
         }
 

@@ -2,7 +2,12 @@
 //!
 //! For closed forms (Klingel, the suspended wheelset, textbook bogies) and as the cheapest contact there is; never
 //! for acceptance. Per wheel: `N = k depth + c depth'`, `Fx = -f11 xi`, `Fy = -f22 eta - f23 phi`, the rolling radius
-//! `r0 + conicity * shift`, the contact plane horizontal (no gravity stiffness).
+//! `r0 + conicity * shift`.
+//!
+//! Without gravity stiffness the normal force is vertical. With it, it stands on the cone: the wheel meets the rail `conicity * shift` deeper and the
+//! normal leans inward by the cone's angle less the roll of the axle. Under the axle load W, l half the distance of the running circles and r0 the radius, a
+//! wheelset is then pushed back by W e/l per metre of shift, e = l conicity/(l - r0 conicity), and turned on by W l conicity per radian of yaw (A. H.
+//! Wickens, *Fundamentals of Rail Vehicle Dynamics* (2003), for cones on knife-edged rails). Creep forces stay in the plane of the track.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -31,4 +36,7 @@ pub struct Textbook {
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "unit" = "N s/m"))]
     pub damping: f64,
+    /// Whether the normal force leans with the cone, so that weight centres a shifted wheelset and turns a yawed one.
+    #[serde(default)]
+    pub gravity_stiffness: bool,
 }

@@ -441,37 +441,50 @@ impl Axle<'_> {
                 let rail = rail_pose(sigma, half, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, 0.0, &rail);
                 wheel.lift(pose.shift);
-                if pose.depth > 0.0 {
-                    *wheel.add() = self.textbook(book, sigma, &pose, rail.surface_velocity[1]);
+                let lean =
+                    if book.gravity_stiffness { book.conicity.atan() - sigma * self.q[3] } else { 0.0 };
+                let depth = pose.depth + lean.tan() * pose.shift;
+                if depth > 0.0 {
+                    *wheel.add() = self.textbook(book, sigma, pose.shift, depth, lean, rail.surface_velocity);
                 }
             }
         }
         Ok(())
     }
 
+    /// `lean` (rad) is the normal's inward, `surface` the velocity of the running surface, side coordinates.
     #[inline(always)]
-    fn textbook(&self, book: &Textbook, sigma: f64, pose: &WheelPose, surface: f64) -> ContactForce {
+    fn textbook(
+        &self,
+        book: &Textbook,
+        sigma: f64,
+        shift: f64,
+        depth: f64,
+        lean: f64,
+        surface: [f64; 2],
+    ) -> ContactForce {
         let half = sigma * self.set.tape_half_distance;
         // In axle axes the contact is below the tape circle, at the rolling radius there.
-        let lever = self.k.R_TB * Vec3::new(0.0, half, self.set.radius + book.conicity * pose.shift);
+        let lever = self.k.R_TB * Vec3::new(0.0, half, self.set.radius + book.conicity * shift);
         let rail = Vec3::new(0.0, self.track.vy, self.track.vz + half * self.track.vphi);
         let v_wheel = self.k.v_T + self.w_T.cross(&lever);
         let slip = v_wheel - rail;
-        let rate = v_wheel.z - surface;
+        let (sin, cos) = lean.sin_cos();
+        let rate = v_wheel.z - surface[1] + lean.tan() * (sigma * v_wheel.y - surface[0]);
         let creepage = Creepage {
             xi: slip.x / self.speed,
             eta: sigma * slip.y / self.speed,
             phi: sigma * self.w_T.z / self.speed,
         };
-        let normal = (book.stiffness * pose.depth + book.damping * rate).max(0.0);
+        let normal = (book.stiffness * depth + book.damping * rate).max(0.0);
         ContactForce {
             geometry: None,
             placed: PlacedContact {
                 lever,
                 point: [half + self.track.y, self.track.z],
                 e_t: Vec3::new(0.0, sigma, 0.0),
-                e_n: Vec3::new(0.0, 0.0, -1.0),
-                penetration: pose.depth,
+                e_n: Vec3::new(0.0, -sigma * sin, -cos),
+                penetration: depth,
                 approach_rate: rate,
                 slip: [slip.x, sigma * slip.y],
                 creepage,

@@ -3,7 +3,7 @@
 use crate::body::{Kinematics, Wrench};
 use crate::contact::creep::{CreepCase, CreepForce};
 use crate::contact::creepage::PlacedContact;
-use crate::contact::geometry_table::ContactPoint;
+use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::dynamics::model::Model;
 use crate::math::Vec3;
 use crate::track::Deviation;
@@ -28,7 +28,7 @@ pub struct ContactForce {
 /// One wheel on its rail. Written by the contact stage.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wheel {
-    slots: [ContactForce; 2],
+    slots: [ContactForce; MAX_CONTACTS],
     count: usize,
     /// Outward lateral shift of the wheel on its rail, m.
     pub shift: f64,
@@ -39,7 +39,7 @@ pub struct Wheel {
 }
 
 impl Wheel {
-    /// The contacts, tread before flange.
+    /// The contacts, from the tread to the flange tip.
     #[must_use]
     pub fn contacts(&self) -> &[ContactForce] {
         &self.slots[..self.count]
@@ -113,8 +113,8 @@ impl Scratch {
             wheels: vec![[Wheel::default(); 2]; ws],
             deviation: vec![Deviation::default(); ws],
             left_rail: None,
-            creep_cases: Vec::with_capacity(4 * ws),
-            creep_forces: vec![CreepForce::default(); 4 * ws],
+            creep_cases: Vec::with_capacity(2 * MAX_CONTACTS * ws),
+            creep_forces: vec![CreepForce::default(); 2 * MAX_CONTACTS * ws],
         }
     }
 }

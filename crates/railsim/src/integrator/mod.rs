@@ -4,7 +4,7 @@
 //! |---|---|---|---|---|
 //! | `heun` | 2 | 2 | 0 (growth of y^4/8 per step) / h lambda = -2 | the paper's scheme |
 //! | `heun_controlled` | 2 | 2, and 1 or 2 for each sub-step more | as `heun`, of its shortest sub-step | steps beyond `heun`'s limit |
-//! | `rk4` | 4 | 4 | 2.83 / -2.79 | smooth models |
+//! | `rk4` | 4 | 4 | 2.83 / -2.79 | runs on lumped track at speed: the hunting spec |
 //! | `ros2` | 2 | 2 and one small LU per stiff block | no limit inside the blocks, as `heun` outside | contact on track masses |
 //!
 //! y is the angular frequency times the step.

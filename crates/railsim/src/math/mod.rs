@@ -1,6 +1,7 @@
 //! Mathematics without a rail word in it.
 
 pub mod angle;
+pub mod arctan;
 pub mod cube_root;
 pub mod eigen;
 pub mod elliptic;

@@ -18,11 +18,13 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 67] = [
+const PARTS: [(&str, &str, &str); 69] = [
     ("Fx", "N", "longitudinal creep force on the wheel, + forward"),
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
-    ("N_flange", "N", "normal force of the flange contact"),
-    ("N_tread", "N", "normal force of the tread contact"),
+    ("N_flange", "N", "normal force on the flange, all contacts there"),
+    ("N_second_flange", "N", "normal force of the contact nearer to the flange tip, of two on the flange"),
+    ("N_second_tread", "N", "normal force of the contact nearer to the flange, of two on the tread"),
+    ("N_tread", "N", "normal force on the tread, all contacts there"),
     ("Q", "N", "vertical wheel force, + presses on the rail"),
     ("Y", "N", "lateral wheel force on the rail, + outward"),
     ("adhesion", "1", "longitudinal creep force over the load of the same wheels, + forward"),
@@ -130,6 +132,8 @@ pub(crate) enum WheelQuantity {
     Shift,
     NTread,
     NFlange,
+    NSecondTread,
+    NSecondFlange,
     CreepX,
     CreepY,
     Spin,
@@ -178,7 +182,17 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
             plan.push((format!("track.{part}"), Source::Irregularity(i)));
         }
     }
-    let profiles = matches!(model.contact, Contact::Profiles { .. });
+    let of_profiles = match &model.contact {
+        Contact::Profiles { table, .. } => {
+            let mut of_profiles =
+                vec![("N_tread", W::NTread), ("N_flange", W::NFlange), ("contact_y", W::ContactY)];
+            let seconds = [("N_second_tread", W::NSecondTread), ("N_second_flange", W::NSecondFlange)];
+            of_profiles
+                .extend(seconds.iter().zip(table.seconds()).filter(|(_, is)| *is).map(|(second, _)| *second));
+            of_profiles
+        }
+        Contact::Textbook(_) => Vec::new(),
+    };
     for (w, set) in model.wheelsets.iter().enumerate() {
         let name = &set.body.name;
         if model.support.is_some() {
@@ -198,9 +212,7 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
                 ("creep_y", W::CreepY),
                 ("spin", W::Spin),
             ];
-            let geometry = [("N_tread", W::NTread), ("N_flange", W::NFlange), ("contact_y", W::ContactY)];
-            let parts = common.iter().chain(geometry.iter().filter(|_| profiles));
-            for (part, quantity) in parts {
+            for (part, quantity) in common.iter().chain(&of_profiles) {
                 plan.push((format!("{name}.{label}.{part}"), Source::Wheel(w, side, *quantity)));
             }
         }

@@ -111,8 +111,8 @@ fn ratio(wheel: &Wheel) -> f64 {
 
 fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {
     use WheelQuantity as W;
-    let zone = |z: Zone| {
-        wheel.contacts().iter().filter(|c| c.geometry.is_some_and(|g| g.zone == z)).map(|c| c.normal).sum()
+    let normal = |part: &dyn Fn(Zone) -> bool| {
+        wheel.contacts().iter().filter(|c| c.geometry.is_some_and(|g| part(g.zone))).map(|c| c.normal).sum()
     };
     let main = wheel.contacts().iter().max_by(|a, b| a.normal.total_cmp(&b.normal));
     let creepage = main.map_or(Creepage { xi: 0.0, eta: 0.0, phi: 0.0 }, |c| c.placed.creepage);
@@ -121,8 +121,10 @@ fn wheel_value(wheel: &Wheel, quantity: WheelQuantity) -> f64 {
         W::Y => wheel.Y,
         W::LV => ratio(wheel),
         W::Shift => wheel.shift,
-        W::NTread => zone(Zone::Tread),
-        W::NFlange => zone(Zone::Flange),
+        W::NTread => normal(&|zone| !zone.is_flange()),
+        W::NFlange => normal(&Zone::is_flange),
+        W::NSecondTread => normal(&|zone| zone == Zone::SecondTread),
+        W::NSecondFlange => normal(&|zone| zone == Zone::SecondFlange),
         W::CreepX => creepage.xi,
         W::CreepY => creepage.eta,
         W::Spin => creepage.phi,

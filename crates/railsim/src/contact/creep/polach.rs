@@ -2,6 +2,7 @@
 
 use super::{CreepForce, Creepage, Patch};
 use crate::error::{Fault, KeyPath};
+use crate::math::arctan::arctan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -56,20 +57,25 @@ impl Polach {
         }
         let with_spin = sy + omega * p.a;
         let syc = if with_spin.abs() > sy.abs() { with_spin } else { sy };
-        let sc = (sx * sx + syc * syc).sqrt();
-        if sc == 0.0 {
+        let sc2 = sx * sx + syc * syc;
+        if sc2 == 0.0 {
             return CreepForce::default();
         }
-        let square = sx * sx + sy * sy;
-        let along = p.c11 * sx;
-        let across = p.c22 * sy;
-        let c_jj = if square > 0.0 { ((along * along + across * across) / square).sqrt() } else { p.c22 };
-        let stiff = p.shear_modulus * p.b / limit;
-        let eps = 0.25 * PI * p.a * stiff * c_jj * sc;
+        let inverse = 1.0 / limit;
+        let stiff = p.shear_modulus * p.b * inverse;
+        // c_jj s_C; where spin alone slides, c_jj is C22
+        let (square, along, across) = (sx * sx + sy * sy, p.c11 * sx, p.c22 * sy);
+        let stretched = if square > 0.0 {
+            (along * along + across * across) * (sc2 / square)
+        } else {
+            p.c22 * p.c22 * sc2
+        };
+        let eps = 0.25 * PI * p.a * stiff * stretched.sqrt();
         let adhesion = self.k_a * eps;
-        let force = 2.0 / PI * limit * (adhesion / (1.0 + adhesion * adhesion) + (self.k_s * eps).atan());
+        let force = 2.0 / PI * limit * (adhesion / (1.0 + adhesion * adhesion) + arctan(self.k_s * eps));
         let spin = if omega == 0.0 { 0.0 } else { spin(p, stiff * syc.abs(), limit) };
-        let (fx, fy) = (-force * sx / sc, -(force * sy + spin * omega) / sc);
+        let over_sc = 1.0 / sc2.sqrt();
+        let (fx, fy) = (-force * sx * over_sc, -(force * sy + spin * omega) * over_sc);
         let size = fx * fx + fy * fy;
         let cut = if size > limit * limit { limit / size.sqrt() } else { 1.0 };
         CreepForce { fx: cut * fx, fy: cut * fy }
@@ -110,10 +116,12 @@ impl Polach {
 /// F_yS, N m: what spin adds to the lateral force, times s_C/omega. `stiff` is G b |s_yC|/(Q mu), `limit` Q mu.
 fn spin(p: &Patch, stiff: f64, limit: f64) -> f64 {
     let k = 1.0 + 6.3 * (1.0 - (-p.a / p.b).exp());
-    let eps = 8.0 / 3.0 * (p.a * p.b).sqrt() * p.c23 * stiff / k;
+    // eps_M = e/K
+    let e = 8.0 / 3.0 * (p.a * p.b).sqrt() * p.c23 * stiff;
+    let (e2, k2) = (e * e, k * k);
     // (1 - d^2)^1.5 = (2 eps/(eps^2 + 1))^3
-    let inverse = 1.0 / (eps * eps + 1.0);
-    let d = (eps * eps - 1.0) * inverse;
-    let root = 2.0 * eps * inverse;
-    9.0 / 16.0 * p.a * limit * k * (eps * (d * d * (0.5 - d / 3.0) - 1.0 / 6.0) + root * root * root / 3.0)
+    let inverse = 1.0 / (e2 + k2);
+    let d = (e2 - k2) * inverse;
+    let root = 2.0 * e * k * inverse;
+    9.0 / 16.0 * p.a * limit * (e * (d * d * (0.5 - d / 3.0) - 1.0 / 6.0) + k * root * root * root / 3.0)
 }

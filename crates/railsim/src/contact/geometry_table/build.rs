@@ -1,12 +1,16 @@
 //! Building a [`GeometryTable`]: two searches per node, coarse over the whole wheel, fine where it may touch.
 
+use super::seam::{Seams, USUAL_ROLL};
 use super::{
-    BLEND_FROM, BLEND_TO, Gaps, GeometryTable, LEAST_CURVATURE, NO_RAIL, PENETRATION, Placement, ROLL_RANGE,
-    ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values, YAW_FULL, YAW_TRAVEL,
+    BLEND_FROM, BLEND_TO, Gaps, GeometryTable, LEAST_CURVATURE, LEAST_PENETRATION, MOST_PENETRATION, NO_RAIL,
+    PENETRATION, Part, Placement, ROLL_RANGE, ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values,
+    YAW_FULL, YAW_TRAVEL,
 };
 use crate::contact::profile::{Profile, ProfileKind, SPACING};
+use crate::contact::search::VIRTUAL;
 use crate::contact::{hertz, kalker_table};
 use crate::error::{Error, Fault, KeyPath, Result};
+use std::ops::Range;
 
 /// Stations per coarse cell (0.4 mm of arc).
 const STRIDE: usize = 8;
@@ -18,12 +22,12 @@ const STEEPEST_CONTACT: f64 = 1.4;
 
 /// A wheel station turned by the roll of the wheel.
 #[derive(Clone, Copy)]
-struct Turned {
+pub(super) struct Turned {
     y: f64,
     z: f64,
     /// Direction of the tangent in rail axes; the contact angle is its negative.
     direction: f64,
-    cos: f64,
+    pub(super) cos: f64,
 }
 
 /// What does not change with the roll.
@@ -31,8 +35,35 @@ struct WheelStation {
     y: f64,
     z: f64,
     curvature: f64,
-    /// chi of tread and flange.
-    chi: [f64; 2],
+}
+
+/// Part of the wheel: the weight chi of every station, and the stations beyond which it is zero.
+struct Support {
+    chi: Vec<f64>,
+    first: usize,
+    end: usize,
+}
+
+impl Support {
+    fn new(chi: Vec<f64>) -> Self {
+        let first = chi.iter().position(|c| *c > 0.0).unwrap_or(chi.len());
+        let end = chi.iter().rposition(|c| *c > 0.0).map_or(first, |last| last + 1);
+        Self { chi, first, end }
+    }
+
+    fn has(&self, k: usize) -> bool {
+        self.chi[k] > 0.0
+    }
+
+    /// The part outside a seam and that inside it, sharing what lies within; and the stations that each has for itself.
+    fn cut(&self, seam: &Range<usize>) -> [(Self, Range<usize>); 2] {
+        let width = (seam.end - seam.start) as f64;
+        let outer = |k: usize| smoothstep((k as f64 - seam.start as f64) / width);
+        let weighted = |weight: &dyn Fn(usize) -> f64| {
+            Self::new(self.chi.iter().enumerate().map(|(k, chi)| chi * weight(k)).collect())
+        };
+        [(weighted(&outer), seam.end..self.chi.len()), (weighted(&|k| 1.0 - outer(k)), 0..seam.start + 1)]
+    }
 }
 
 fn smoothstep(x: f64) -> f64 {
@@ -65,7 +96,7 @@ impl GeometryTable {
         penetration: f64,
     ) -> Result<Self> {
         check(wheel, rail, placement)?;
-        if !(1e-6..=200e-6).contains(&penetration) {
+        if !(LEAST_PENETRATION..=MOST_PENETRATION).contains(&penetration) {
             let found = format!("{} um", 1e6 * penetration);
             return Err(Error::input(Fault::new(KeyPath::of("penetration"), found, "1 to 200 um")));
         }
@@ -77,6 +108,7 @@ impl GeometryTable {
             flange_angle: wheel.stations().iter().fold(0.0, |most, s| most.max(-s.direction)),
             gaps: Vec::with_capacity(SHIFTS * ROLLS),
             values: [Vec::with_capacity(SHIFTS * ROLLS), Vec::with_capacity(SHIFTS * ROLLS)],
+            split: [None, None],
         };
         table.fill(wheel, penetration);
         Ok(table)
@@ -84,31 +116,63 @@ impl GeometryTable {
 
     fn fill(&mut self, wheel: &Profile, penetration: f64) {
         let stations = wheel_stations(wheel);
-        let nominal = self.placement.tape_half_distance - self.rail_origin_y;
-        let mut turned = Vec::with_capacity(stations.len());
+        let supports = zones(wheel);
+        let mut seams = [Seams::new(stations.len()), Seams::new(stations.len())];
+        let rail = self.rail.clone();
+        let scene =
+            Scene { rail: &rail, stations: &stations, penetration, placement: &self.placement.clone() };
+        // of the patch whose averages these are; the stations at hand reach no further
+        let approach = (penetration / VIRTUAL).min(penetration + SLACK);
         let mut scratch = Scratch::default();
-        for j in 0..ROLLS {
-            let roll = -ROLL_RANGE + ROLL_STEP * j as f64;
-            let (sin, cos) = roll.sin_cos();
-            turned.clear();
-            turned.extend(stations.iter().zip(wheel.stations()).map(|(s, raw)| {
-                let direction = raw.direction + roll;
-                Turned {
-                    y: s.y * cos - s.z * sin,
-                    z: s.y * sin + s.z * cos,
-                    direction,
-                    cos: direction.abs().min(STEEPEST_CONTACT).cos(),
+        let mut near: [Vec<(usize, f64)>; 2] = Default::default();
+        let mut extents: [Vec<Range<usize>>; 2] = Default::default();
+        scene.nodes(self.rail_origin_y, wheel, |turned, roll, offset| {
+            scene.look(turned, offset, 0..stations.len(), &mut scratch);
+            let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
+            for zone in 0..2 {
+                let mut values = [0.0; 16];
+                near[zone].clear();
+                if let Some(found) = scene.node(turned, offset, &supports[zone], &mut scratch) {
+                    [gaps.gap[zone], gaps.yaw[zone]] = found.gap;
+                    values = found.values;
+                    if !values[0].is_nan() {
+                        std::mem::swap(&mut near[zone], &mut scratch.fine);
+                    }
                 }
-            }));
-            for i in 0..SHIFTS {
-                let offset = nominal - SHIFT_RANGE + SHIFT_STEP * i as f64;
-                let (gaps, [tread, flange]) =
-                    node(&self.rail, &stations, &turned, offset, penetration, &self.placement, &mut scratch);
-                self.gaps.push(gaps);
-                self.values[0].push(tread);
-                self.values[1].push(flange);
+                self.values[zone].push(values);
+                extents[zone].push(extent(turned, &near[zone], gaps.gap[zone], penetration));
+            }
+            let least = gaps.gap[0].min(gaps.gap[1]);
+            let usual = roll.abs() < USUAL_ROLL;
+            for zone in (0..2).filter(|&z| usual && gaps.gap[z] - least < approach) {
+                seams[zone].note(turned, &supports[zone].chi, &near[zone], gaps.gap[zone], approach);
+            }
+            self.gaps.push(gaps);
+        });
+        for zone in 0..2 {
+            if let Some(seam) = seams[zone].seam() {
+                let whole =
+                    |n: usize| ([self.gaps[n].gap[zone], self.gaps[n].yaw[zone]], self.values[zone][n]);
+                let parts = supports[zone].cut(&seam).map(|(support, full)| {
+                    // where the zone's own average lies within the part, it is the part's
+                    let known = |n: usize| {
+                        let e: &Range<usize> = &extents[zone][n];
+                        (!e.is_empty() && full.start <= e.start && e.end <= full.end).then(|| whole(n))
+                    };
+                    scene.part(self.rail_origin_y, wheel, &support, known, &mut scratch)
+                });
+                self.split[zone] = Some(Box::new(parts));
             }
         }
+    }
+}
+
+/// From the first to the last station that an average is over.
+fn extent(turned: &[Turned], fine: &[(usize, f64)], least: f64, penetration: f64) -> Range<usize> {
+    let mut within = fine.iter().filter(|(k, g)| (g - least) * turned[*k].cos < penetration).map(|(k, _)| *k);
+    match within.next() {
+        Some(first) => first..within.next_back().unwrap_or(first) + 1,
+        None => 0..0,
     }
 }
 
@@ -142,87 +206,159 @@ fn gauge_point(rail: &Profile, depth: f64) -> Option<f64> {
 }
 
 fn wheel_stations(wheel: &Profile) -> Vec<WheelStation> {
-    let mut out: Vec<WheelStation> = wheel
-        .stations()
-        .iter()
-        .map(|s| WheelStation {
-            y: s.y,
-            z: s.z,
-            curvature: s.curvature,
-            chi: [1.0, smoothstep((-s.direction - BLEND_FROM) / (BLEND_TO - BLEND_FROM))],
-        })
-        .collect();
+    wheel.stations().iter().map(|s| WheelStation { y: s.y, z: s.z, curvature: s.curvature }).collect()
+}
+
+/// Tread and flange.
+fn zones(wheel: &Profile) -> [Support; 2] {
     // from the running circle to the flange: once flange, always flange; field side: always tread
     let mut flange = 0.0_f64;
-    for station in out.iter_mut().rev() {
-        flange = if station.y > 0.0 { 0.0 } else { flange.max(station.chi[1]) };
-        station.chi = [1.0 - flange, flange];
-    }
-    out
+    let mut chi: Vec<f64> = wheel
+        .stations()
+        .iter()
+        .rev()
+        .map(|s| {
+            let here = smoothstep((-s.direction - BLEND_FROM) / (BLEND_TO - BLEND_FROM));
+            flange = if s.y > 0.0 { 0.0 } else { flange.max(here) };
+            flange
+        })
+        .collect();
+    chi.reverse();
+    [Support::new(chi.iter().map(|flange| 1.0 - flange).collect()), Support::new(chi)]
 }
 
 #[derive(Default)]
 struct Scratch {
+    /// Gaps of every [`STRIDE`]th station, from the first cell that was looked at.
     coarse: Vec<f64>,
     fine: Vec<(usize, f64)>,
 }
 
-fn node(
-    rail: &Profile,
-    stations: &[WheelStation],
-    turned: &[Turned],
-    offset: f64,
+/// What a zone has at a node.
+struct Found {
+    /// Vertical gap, and its rate by yaw^2.
+    gap: [f64; 2],
+    values: Values,
+}
+
+/// A wheel over its rail.
+struct Scene<'a> {
+    rail: &'a Profile,
+    stations: &'a [WheelStation],
     penetration: f64,
-    placement: &Placement,
-    scratch: &mut Scratch,
-) -> (Gaps, [Values; 2]) {
-    let gap = |t: &Turned| rail.z(t.y + offset).map_or(f64::INFINITY, |z| z - t.z);
-    scratch.coarse.clear();
-    scratch.coarse.extend(turned.iter().step_by(STRIDE).map(&gap));
-    let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
-    let mut values = [[0.0; 16]; 2];
-    for (zone, out) in values.iter_mut().enumerate() {
-        let supported = |k: usize| stations[k].chi[zone] > 0.0;
+    placement: &'a Placement,
+}
+
+impl Scene<'_> {
+    /// Goes through all nodes in the order of the table.
+    fn nodes(&self, rail_origin_y: f64, wheel: &Profile, mut node: impl FnMut(&[Turned], f64, f64)) {
+        let nominal = self.placement.tape_half_distance - rail_origin_y;
+        let mut turned = Vec::with_capacity(self.stations.len());
+        for j in 0..ROLLS {
+            let roll = -ROLL_RANGE + ROLL_STEP * j as f64;
+            let (sin, cos) = roll.sin_cos();
+            turned.clear();
+            turned.extend(self.stations.iter().zip(wheel.stations()).map(|(s, raw)| {
+                let direction = raw.direction + roll;
+                Turned {
+                    y: s.y * cos - s.z * sin,
+                    z: s.y * sin + s.z * cos,
+                    direction,
+                    cos: direction.abs().min(STEEPEST_CONTACT).cos(),
+                }
+            }));
+            for i in 0..SHIFTS {
+                node(&turned, roll, nominal - SHIFT_RANGE + SHIFT_STEP * i as f64);
+            }
+        }
+    }
+
+    /// One part of a zone that touches in two places, over all nodes; `known` has those that need no search.
+    fn part(
+        &self,
+        rail_origin_y: f64,
+        wheel: &Profile,
+        support: &Support,
+        known: impl Fn(usize) -> Option<([f64; 2], Values)>,
+        scratch: &mut Scratch,
+    ) -> Part {
+        let count = SHIFTS * ROLLS;
+        let mut out = Part { gaps: Vec::with_capacity(count), values: Vec::with_capacity(count) };
+        self.nodes(rail_origin_y, wheel, |turned, _, offset| {
+            let (gap, values) = known(out.gaps.len()).unwrap_or_else(|| {
+                self.look(turned, offset, support.first..support.end, scratch);
+                self.node(turned, offset, support, scratch)
+                    .map_or(([NO_RAIL, 0.0], [0.0; 16]), |f| (f.gap, f.values))
+            });
+            out.gaps.push(gap);
+            out.values.push(values);
+        });
+        out
+    }
+
+    fn gap(&self, t: &Turned, offset: f64) -> f64 {
+        self.rail.z(t.y + offset).map_or(f64::INFINITY, |z| z - t.z)
+    }
+
+    /// Gaps at the ends of the coarse cells that hold some stations; infinite elsewhere.
+    fn look(&self, turned: &[Turned], offset: f64, over: Range<usize>, scratch: &mut Scratch) {
+        let cells = over.start / STRIDE..over.end.div_ceil(STRIDE) + 1;
+        scratch.coarse.clear();
+        scratch.coarse.extend(
+            turned
+                .iter()
+                .step_by(STRIDE)
+                .enumerate()
+                .map(|(c, t)| if cells.contains(&c) { self.gap(t, offset) } else { f64::INFINITY }),
+        );
+    }
+
+    fn node(
+        &self,
+        turned: &[Turned],
+        offset: f64,
+        support: &Support,
+        scratch: &mut Scratch,
+    ) -> Option<Found> {
         let coarse_least = scratch
             .coarse
             .iter()
             .enumerate()
-            .filter(|(c, _)| supported(c * STRIDE))
+            .filter(|(c, _)| support.has(c * STRIDE))
             .map(|(_, g)| *g)
             .fold(f64::INFINITY, f64::min);
         if !coarse_least.is_finite() {
-            continue;
+            return None;
         }
         scratch.fine.clear();
-        for c in 0..scratch.coarse.len() {
+        for c in support.first / STRIDE..support.end.div_ceil(STRIDE) {
             let first = c * STRIDE;
             let end = (first + STRIDE).min(turned.len());
             let next = scratch.coarse.get(c + 1).copied().unwrap_or(f64::INFINITY);
-            let near = (penetration + SLACK) / turned[first].cos.min(turned[end - 1].cos);
-            if scratch.coarse[c].min(next) - coarse_least > near || !(supported(first) || supported(end - 1))
+            let near = (self.penetration + SLACK) / turned[first].cos.min(turned[end - 1].cos);
+            if scratch.coarse[c].min(next) - coarse_least > near
+                || !(support.has(first) || support.has(end - 1))
             {
                 continue;
             }
-            for k in (first..end).filter(|&k| supported(k)) {
-                let g = gap(&turned[k]);
+            for k in (first..end).filter(|&k| support.has(k)) {
+                let g = self.gap(&turned[k], offset);
                 if g.is_finite() {
                     scratch.fine.push((k, g));
                 }
             }
         }
-        let Some(&(lowest, least)) = scratch.fine.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
-        let average =
-            average(rail, stations, turned, offset, zone, penetration, (lowest, least), &scratch.fine);
-        gaps.gap[zone] = least;
+        let &(lowest, least) = scratch.fine.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let average = self.average(turned, offset, support, least, &scratch.fine);
         let tan = average.angle.clamp(-STEEPEST_CONTACT, STEEPEST_CONTACT).tan();
         // the second part: the profile's own distance from the running circle, foreshortened
-        gaps.yaw[zone] = 0.5 * tan * ((placement.wheel_radius + average.z_wheel) * tan - average.y_wheel);
-        *out = average.values(placement);
-        if at_end(rail, turned, offset, lowest) {
-            out[0] = f64::NAN;
+        let yaw = 0.5 * tan * ((self.placement.wheel_radius + average.z_wheel) * tan - average.y_wheel);
+        let mut values = average.values(self.placement);
+        if at_end(self.rail, turned, offset, lowest) {
+            values[0] = f64::NAN;
         }
+        Some(Found { gap: [least, yaw], values })
     }
-    (gaps, values)
 }
 
 /// Whether a closest station is the last of the wheel, or over the last of the rail, so that the surfaces might come closer beyond.
@@ -244,49 +380,48 @@ struct Average {
     rail_curvature: f64,
 }
 
-#[allow(clippy::too_many_arguments)] // one stage of the build
-fn average(
-    rail: &Profile,
-    stations: &[WheelStation],
-    turned: &[Turned],
-    offset: f64,
-    zone: usize,
-    penetration: f64,
-    (_, least): (usize, f64),
-    fine: &[(usize, f64)],
-) -> Average {
-    let mut sum = Average::default();
-    let mut total = 0.0;
-    for &(k, g) in fine {
-        let (station, t) = (&stations[k], &turned[k]);
-        let w = 1.0 - (g - least) * t.cos / penetration;
-        if w <= 0.0 {
-            continue;
+impl Scene<'_> {
+    fn average(
+        &self,
+        turned: &[Turned],
+        offset: f64,
+        support: &Support,
+        least: f64,
+        fine: &[(usize, f64)],
+    ) -> Average {
+        let mut sum = Average::default();
+        let mut total = 0.0;
+        for &(k, g) in fine {
+            let (station, t) = (&self.stations[k], &turned[k]);
+            let w = 1.0 - (g - least) * t.cos / self.penetration;
+            if w <= 0.0 {
+                continue;
+            }
+            let y = t.y + offset;
+            let Some(local) = self.rail.local(y) else { continue };
+            total += w;
+            sum.share += w * support.chi[k];
+            sum.y_rail += w * y;
+            sum.z_rail += w * (g + t.z);
+            sum.y_wheel += w * station.y;
+            sum.z_wheel += w * station.z;
+            sum.angle -= w * 0.5 * (t.direction + local.direction);
+            sum.curvature += w * (local.curvature - station.curvature);
+            sum.rail_curvature += w * local.curvature;
         }
-        let y = t.y + offset;
-        let Some(local) = rail.local(y) else { continue };
-        total += w;
-        sum.share += w * station.chi[zone];
-        sum.y_rail += w * y;
-        sum.z_rail += w * (g + t.z);
-        sum.y_wheel += w * station.y;
-        sum.z_wheel += w * station.z;
-        sum.angle -= w * 0.5 * (t.direction + local.direction);
-        sum.curvature += w * (local.curvature - station.curvature);
-        sum.rail_curvature += w * local.curvature;
-    }
-    let scale = 1.0 / total;
-    let width = total * SPACING;
-    let conforming = 0.5 * 32.0 * penetration / (9.0 * width * width);
-    Average {
-        share: sum.share * scale,
-        y_rail: sum.y_rail * scale,
-        z_rail: sum.z_rail * scale,
-        y_wheel: sum.y_wheel * scale,
-        z_wheel: sum.z_wheel * scale,
-        angle: sum.angle * scale,
-        curvature: (sum.curvature * scale).max(conforming).max(LEAST_CURVATURE),
-        rail_curvature: sum.rail_curvature * scale,
+        let scale = 1.0 / total;
+        let width = total * SPACING;
+        let conforming = 0.5 * 32.0 * self.penetration / (9.0 * width * width);
+        Average {
+            share: sum.share * scale,
+            y_rail: sum.y_rail * scale,
+            z_rail: sum.z_rail * scale,
+            y_wheel: sum.y_wheel * scale,
+            z_wheel: sum.z_wheel * scale,
+            angle: sum.angle * scale,
+            curvature: (sum.curvature * scale).max(conforming).max(LEAST_CURVATURE),
+            rail_curvature: sum.rail_curvature * scale,
+        }
     }
 }
 

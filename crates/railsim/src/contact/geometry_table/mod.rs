@@ -4,12 +4,16 @@
 //! point) the vertical gap at every lateral position y is g(y) = z_rail(y) - z_wheel(y), with the tape-circle point at
 //! z = 0. Lowered by dz the wheel touches where dz > g.
 //!
-//! **Zones.** Up to two simultaneous contacts, one per zone of the *wheel*: tread and flange. A smooth weight chi over the wheel's
+//! **Zones.** One contact per zone of the *wheel*, tread and flange. A smooth weight chi over the wheel's
 //! own contact angle divides them, 1 on the tread below [`BLEND_FROM`], 0 on the flange above [`BLEND_TO`] and from there on
 //! to the flange tip. The bounds lie about where the crown of a rail (R 300, R 80) ends and its gauge corner (R 13)
 //! begins: 0.22 rad on as60, 0.24 rad on UIC 60, plus or minus the inclination. Tread contacts stay below 0.15 rad (0.144 at most on S1002, 0.09 on
 //! the worn anzr1), flange and root contacts lie above 0.35 rad, and rigid contact jumps from the one to the other. Where a pair leads one contact
 //! through the blend, both zones see it and share it, `share` adding up to about 1; two separate contacts have share 1 each.
+//!
+//! **Second parts.** Where the pair touches in two places of one zone at once (root and face of a worn flange, two places of a
+//! tread), that zone is cut between them ([`seam`]) and each part has its own contact: up to three at once, in four slots. Which pairs do, building the table finds out; for all
+//! others it costs nothing. The back of a flange is in no table: within [`SHIFT_RANGE`] it does not come nearer than some 10 mm to a running rail.
 //!
 //! **Quasi-elastic averages.** Rigid contact points jump from one place of nearly conforming profiles to another; the pressed patch
 //! does not. Each zone's position, angle and curvature are averages over the zone with the weight
@@ -33,12 +37,15 @@
 
 mod build;
 mod gauge;
+mod seam;
 pub mod store;
 
 pub(crate) use build::{check, place_rail};
 pub use store::{Pair, Tables};
 
+use crate::contact::hertz;
 use crate::contact::profile::Profile;
+use crate::contact::search::VIRTUAL;
 
 /// Contact angle of the wheel up to which it is all tread, rad.
 pub const BLEND_FROM: f64 = 0.15;
@@ -46,6 +53,12 @@ pub const BLEND_FROM: f64 = 0.15;
 pub const BLEND_TO: f64 = 0.35;
 /// Normal penetration of the quasi-elastic average, m.
 pub const PENETRATION: f64 = 0.03e-3;
+/// Least normal penetration of an average, m.
+pub const LEAST_PENETRATION: f64 = 1e-6;
+/// Greatest normal penetration of an average, m.
+pub const MOST_PENETRATION: f64 = 200e-6;
+/// Radius of a rail's crown for which a wheel load is turned into an approach, m.
+pub const CROWN_RADIUS: f64 = 0.3;
 /// Most that yaw may move a contact along the rail, m at [`YAW_FULL`].
 pub const YAW_TRAVEL: f64 = 2e-3;
 /// Yaw to which that bound belongs, rad.
@@ -53,8 +66,8 @@ pub const YAW_FULL: f64 = 0.02;
 /// Bound of the relative lateral curvature, 1/m (a radius of 2 m).
 pub const LEAST_CURVATURE: f64 = 0.5;
 
-/// Most contacts of one wheel that a table gives.
-pub const MAX_CONTACTS: usize = 2;
+/// Most contacts of one wheel that a table gives: three places at once are the most that was met; one of them in a blend counts twice.
+pub const MAX_CONTACTS: usize = 4;
 /// Greatest shift either way, m.
 pub const SHIFT_RANGE: f64 = 0.020;
 /// Step of the shift, m.
@@ -86,20 +99,43 @@ pub struct Placement {
     pub poisson: f64,
 }
 
+impl Placement {
+    /// Normal interpenetration (m) that belongs to a wheel load (N): [`VIRTUAL`](crate::contact::search::VIRTUAL) times the approach that Hertz
+    /// gives this wheel, a cylinder along the rail, on a head of radius [`CROWN_RADIUS`]; within the bounds of [`GeometryTable::build_at`].
+    #[must_use]
+    pub fn penetration_under(&self, load: f64) -> f64 {
+        let modulus = hertz::effective_modulus(self.youngs_modulus, self.poisson);
+        let patch = hertz::solve(1.0 / self.wheel_radius, 1.0 / CROWN_RADIUS, modulus);
+        (VIRTUAL * (load / patch.stiffness).powf(2.0 / 3.0)).clamp(LEAST_PENETRATION, MOST_PENETRATION)
+    }
+}
+
 /// Part of the wheel profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Zone {
     /// Contact angles below the blend.
     #[default]
     Tread,
-    /// Contact angles above it, to the flange tip.
+    /// The part of the tread nearer to the flange, of a pair that touches in two places of the tread at once.
+    SecondTread,
+    /// Contact angles above the blend, to the flange tip.
     Flange,
+    /// The part of the flange nearer to its tip, of a pair that touches in two places of the flange at once.
+    SecondFlange,
+}
+
+impl Zone {
+    /// Whether it is on the flange, first or second part.
+    #[must_use]
+    pub fn is_flange(self) -> bool {
+        matches!(self, Self::Flange | Self::SecondFlange)
+    }
 }
 
 /// One contact between wheel and rail.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactPoint {
-    /// Tread or flange.
+    /// Part of the wheel.
     pub zone: Zone,
     /// Vertical penetration, dz less the gap (m, > 0). The normal one is this times cos(angle).
     pub penetration: f64,
@@ -166,7 +202,33 @@ pub struct GeometryTable {
     /// [roll][shift]
     gaps: Vec<Gaps>,
     values: [Vec<Values>; 2],
+    /// The two parts of tread and flange, where they touch in two places at once.
+    split: [Option<Box<[Part; 2]>>; 2],
 }
+
+/// One part of a zone that touches in two places.
+#[derive(Debug, Clone, PartialEq)]
+struct Part {
+    /// Vertical gap, m, and its rate by yaw^2, m/rad^2.
+    gaps: Vec<[f64; 2]>,
+    values: Vec<Values>,
+}
+
+impl Part {
+    #[inline(always)]
+    fn gap_at(&self, place: &Place) -> [f64; 2] {
+        let mut out = [0.0; 2];
+        for (n, w) in place.nodes().into_iter().zip(place.weights) {
+            let node = &self.gaps[n];
+            out[0] += w * node[0];
+            out[1] += w * node[1];
+        }
+        out
+    }
+}
+
+/// Zones as a whole, and their second parts.
+const ZONES: [[Zone; 2]; 2] = [[Zone::Tread, Zone::SecondTread], [Zone::Flange, Zone::SecondFlange]];
 
 /// Gap of a zone that has no rail under it, m.
 const NO_RAIL: f64 = 0.2;
@@ -240,17 +302,6 @@ impl GeometryTable {
         out
     }
 
-    #[inline(always)]
-    fn values_at(&self, place: &Place, zone: usize) -> Values {
-        let mut out = [0.0; 16];
-        for (n, w) in place.nodes().into_iter().zip(place.weights) {
-            for (o, v) in out.iter_mut().zip(&self.values[zone][n]) {
-                *o += w * v;
-            }
-        }
-        out
-    }
-
     /// Contacts of the wheel at shift `dy`, `roll` and depth `dz`; returns how many of `out` were written (0 to [`MAX_CONTACTS`]).
     ///
     /// - `dy` (m): side coordinate of the wheel's tape-circle point relative to the rail less its nominal value, in rail
@@ -275,25 +326,24 @@ impl GeometryTable {
         let place = self.place(dy, roll)?;
         let gaps = self.gaps_at(&place);
         let mut count = 0;
-        for (zone, name) in [Zone::Tread, Zone::Flange].into_iter().enumerate() {
+        for (zone, names) in ZONES.into_iter().enumerate() {
+            if let Some(parts) = &self.split[zone] {
+                count = split(parts, names, &place, dz, yaw, out, count).ok_or(OutOfTable { dy, roll })?;
+                continue;
+            }
             let penetration = dz - gaps.gap[zone] + gaps.yaw[zone] * yaw * yaw;
             if penetration > 0.0 {
-                let mut v = self.values_at(&place, zone);
-                if v[0] > 0.0 {
-                    let [on_rail, on_wheel, angle] = [v[12], v[13], v[14]].map(|rate| rate * yaw * yaw);
-                    v[1] += on_rail;
-                    v[2] += v[15] * on_rail;
-                    v[3] += on_wheel;
-                    v[4] += v[15] * on_wheel;
-                    v[5] += angle;
-                    out[count] = point(name, penetration, &v);
-                    count += 1;
-                } else if v[0].is_nan() {
-                    return Err(OutOfTable { dy, roll });
-                }
+                let v = values_at(&self.values[zone], &place);
+                count = add(names[0], penetration, v, yaw, out, count).ok_or(OutOfTable { dy, roll })?;
             }
         }
         Ok(count)
+    }
+
+    /// Whether tread and flange have a second part: a pair that touches there in two places at once.
+    #[must_use]
+    pub fn seconds(&self) -> [bool; 2] {
+        [self.split[0].is_some(), self.split[1].is_some()]
     }
 
     /// Vertical gap (m) of each zone, tread and flange, with the tape-circle point at the top of rail; without yaw.
@@ -312,12 +362,67 @@ impl GeometryTable {
         let place = self.place(dy, roll)?;
         let gap = self.gaps_at(&place).gap;
         let (zone, name) = if gap[0] <= gap[1] { (0, Zone::Tread) } else { (1, Zone::Flange) };
-        let values = self.values_at(&place, zone);
+        let values = values_at(&self.values[zone], &place);
         if values[0].is_nan() {
             return Err(OutOfTable { dy, roll });
         }
         Ok(point(name, 0.0, &values))
     }
+}
+
+#[inline(always)]
+fn values_at(nodes: &[Values], place: &Place) -> Values {
+    let mut out = [0.0; 16];
+    for (n, w) in place.nodes().into_iter().zip(place.weights) {
+        for (o, v) in out.iter_mut().zip(&nodes[n]) {
+            *o += w * v;
+        }
+    }
+    out
+}
+
+/// Adds a contact that penetrates; gives the count back, `None` where it is at an end of a profile.
+#[inline(always)]
+fn add(
+    zone: Zone,
+    penetration: f64,
+    mut v: Values,
+    yaw: f64,
+    out: &mut [ContactPoint; MAX_CONTACTS],
+    count: usize,
+) -> Option<usize> {
+    if v[0] > 0.0 {
+        let [on_rail, on_wheel, angle] = [v[12], v[13], v[14]].map(|rate| rate * yaw * yaw);
+        v[1] += on_rail;
+        v[2] += v[15] * on_rail;
+        v[3] += on_wheel;
+        v[4] += v[15] * on_wheel;
+        v[5] += angle;
+        out[count] = point(zone, penetration, &v);
+        return Some(count + 1);
+    }
+    (!v[0].is_nan()).then_some(count)
+}
+
+/// Contacts of both parts of a zone. Apart from the rest, so that pairs without second parts do not pay for it.
+#[inline(never)]
+fn split(
+    parts: &[Part; 2],
+    names: [Zone; 2],
+    place: &Place,
+    dz: f64,
+    yaw: f64,
+    out: &mut [ContactPoint; MAX_CONTACTS],
+    mut count: usize,
+) -> Option<usize> {
+    for (part, name) in parts.iter().zip(names) {
+        let [gap, rate] = part.gap_at(place);
+        let penetration = dz - gap + rate * yaw * yaw;
+        if penetration > 0.0 {
+            count = add(name, penetration, values_at(&part.values, place), yaw, out, count)?;
+        }
+    }
+    Some(count)
 }
 
 #[inline(always)]
