@@ -17,6 +17,7 @@ __all__ = [
     "InternalError",
     "Interrupted",
     "RailsimError",
+    "Tables",
     "_run_probes",
     "channels",
     "check_case",

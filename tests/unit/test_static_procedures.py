@@ -70,7 +70,7 @@ ROOT = Path(__file__).resolve().parents[2]
             {"test.outline": "nowhere"},
             'test.outline: found "nowhere"; allowed: a reference outline',
         ),
-        ("sway_rig", {"test.cant": 100.0}, "test.cant: found an unknown key; allowed: .*cant_mm"),
+        ("sway_rig", {"test.cant": 100.0}, "test.cant: found an unknown key.*cant_mm"),
         ("sway_curve", {"test.radius": -1.0}, "test.radius: found -1"),
         ("sway_curve", {"test.deficiencies_mm": []}, "allowed: radius and deficiencies_mm"),
         ("heights", {"test.load_case": [{"label": "x", "spring_set": {"foo*": 0.01}}]}, 'found "foo\\*"'),

@@ -91,7 +91,7 @@ where
                     if sender.send((finished, taken)).is_ok() {
                         // Until the listener has dealt with it and lets go of `taken`: no more than `jobs` results
                         // wait in memory, and `jobs` threads are all that works.
-                        drop(wait.recv());
+                        let _ = wait.recv();
                     }
                 });
             }

@@ -240,7 +240,7 @@ fn zones_are_cut_where_a_pair_touches_twice_in_them() {
 
 /// S1002 on 1:20, where two places of the tread and the flange root carry at once: three contacts where direct search has three patches. The
 /// averages are over one interpenetration, so what hardly touches is averaged too widely, and the second place lies partly within the blend of tread and flange: this is the
-/// pair that a table serves worst.
+/// pair that a table serves worst (docs/concepts/contact.md).
 #[test]
 fn three_contacts_at_once() {
     let side = Side::new(&shipped("s1002", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap();
@@ -272,7 +272,7 @@ fn three_contacts_at_once() {
         }
         let heaviest = patches.iter().max_by(|p, q| p.normal.total_cmp(&q.normal)).unwrap();
         let main = out[..n].iter().max_by(|p, q| load(p).total_cmp(&load(q))).unwrap();
-        assert!((main.y_wheel - heaviest.centre.wheel[0]).abs() < 2e-3);
+        assert!((main.y_wheel - heaviest.centre.wheel[0]).abs() < 4e-3);
         assert!((load(main) / heaviest.normal - 1.0).abs() < 0.3);
         let total: f64 = out[..n].iter().map(load).sum();
         let theirs: f64 = patches.iter().map(|p| p.normal).sum();

@@ -345,7 +345,7 @@ fn control_keeps_a_stiff_mode_bounded_far_beyond_the_limit_of_heun() {
         println!("h {h}: controlled {x:?} {:?}, heun {plain:?}", stepper.statistics());
         // What is left is what the control does not see: local errors of the tolerance at most.
         assert!(x[1].abs() <= 10.0 * tolerance, "{x:?}");
-        assert!(!(plain[1].abs() < 1e3), "{plain:?}");
+        assert!(plain[1].is_nan() || plain[1].abs() > 1e3, "{plain:?}");
     }
 }
 
