@@ -424,8 +424,8 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/track/irregularity",
             json!([{ "kind": "psd", "form": "fra_hamid_yang", "clas": 6, "wavelengths": [1.5], "seed": 0.5, "period": 1000 }]),
-            "track.irregularity[0].clas: found an unknown key; allowed: class, form, gauge, kind, level, \
-         period, scale, seed, wavelengths (did you mean class?)\n\
+            "track.irregularity[0].clas: found an unknown key; allowed: class, density, density_rad, form, gauge, \
+         kind, level, period, scale, seed, wavelengths (did you mean class?)\n\
          track.irregularity[0].seed: found 0.5; allowed: a whole number >= 0\n\
          track.irregularity[0].wavelengths: found a list of 1; allowed: a list of 2, each a number",
         ),
