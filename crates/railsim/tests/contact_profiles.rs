@@ -14,6 +14,7 @@ use railsim::dynamics::compile::geometry_table;
 use railsim::schema::Case;
 use railsim::{Error, KeyPath};
 use serde_json::json;
+use std::sync::Arc;
 
 const WHEELS: [&str; 5] = ["anzr1", "anzr1_worn_1", "anzr1_worn_2", "anzr1_worn_high", "s1002"];
 const RAILS: [&str; 2] = ["as60", "uic60"];
@@ -233,7 +234,7 @@ fn vampire_files_are_read_with_their_header_or_as_two_columns() {
 }
 
 /// A case with one profile replaced, points in mm; what becomes of it on its way to the geometry table.
-fn table_of(kind: &str, points: &[[f64; 2]]) -> Result<GeometryTable, Error> {
+fn table_of(kind: &str, points: &[[f64; 2]]) -> Result<Arc<GeometryTable>, Error> {
     let mut case = common::coco134();
     let name = if kind == "wheel" { "anzr1" } else { "as60" };
     case["profiles"][name]["points"] = json!(points);
