@@ -73,7 +73,7 @@ def edited(old: str, new: str) -> str:
             "max_asb = 0.35",
             (
                 '22: criterion[0].max_asb: found an unknown key "max_asb"; allowed: case, chain, max, max_abs, min, '
-                'name, published, reason, signal, source, strict, unit (did you mean "max_abs"?)'
+                'name, needs, published, reason, signal, source, strict, unit (did you mean "max_abs"?)'
             ),
         ),
         (

@@ -60,6 +60,18 @@ fn numbers(v: &Vehicle) -> BTreeMap<String, f64> {
     }
     let hold = v.speed_hold.as_ref().unwrap();
     put("speed_hold".into(), &[hold.stiffness, hold.damping]);
+    if let Some(drive) = &v.traction {
+        put("traction".into(), &[drive.max_effort, drive.power_at_rail]);
+    }
+    if let Some(brake) = &v.dynamic_brake {
+        put("dynamic_brake".into(), &[brake.max_effort]);
+    }
+    if let Some(brake) = &v.air_brake {
+        put("air_brake".into(), &[brake.apply_time]);
+    }
+    if let Some(brake) = &v.parking_brake {
+        put("parking_brake".into(), &[brake.block_force]);
+    }
     put("contact".into(), &[v.contact.youngs_modulus, v.contact.poisson, v.contact.damping]);
     out
 }
@@ -99,6 +111,10 @@ fn may_change(name: &str) -> Vec<&'static str> {
         ("lateral_damper", _) => vec!["lateral_damper_"],
         ("yaw_damper", _) => vec!["yaw_damper_"],
         ("contact", _) => vec!["contact"],
+        ("traction", _) => vec!["traction"],
+        ("dynamic_brake", _) => vec!["dynamic_brake"],
+        ("air_brake", _) => vec!["air_brake"],
+        ("parking_brake", _) => vec!["parking_brake"],
         ("speed_hold", _) => vec!["speed_hold"],
         _ => panic!("a new group: {group}"),
     }
