@@ -28,6 +28,7 @@ fn vehicle_alone() -> Model {
     let mut model = compile::model(&common::case(&common::coco134())).unwrap();
     model.support = None;
     model.contact = Contact::Textbook(Textbook {
+        gravity_stiffness: false,
         conicity: 0.05,
         f11: 1.5e7,
         f22: 1.5e7,
