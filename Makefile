@@ -38,7 +38,7 @@ $(MODULE): $(SITE) $(RUST)
 
 test: dev
 	cargo test --quiet --no-fail-fast
-	$(BIN)/pytest -n auto -m 'not slow'
+	$(BIN)/pytest -n auto --dist worksteal -m 'not slow'
 
 check: format lint types architecture rust pytest
 
@@ -61,7 +61,7 @@ rust:
 	cargo test --quiet --no-fail-fast
 
 pytest: dev
-	$(BIN)/pytest -n auto
+	$(BIN)/pytest -n auto --dist worksteal
 
 bench: dev
 	cargo bench

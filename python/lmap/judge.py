@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from lmap.verdict import (
     CaseResult,
     CriterionVerdict,
     Drawing,
+    Frames,
     Held,
     SpecVerdict,
     outcome_of,
@@ -58,7 +59,7 @@ def _read(prepared: Prepared, results: Mapping[str, CaseOutcome]) -> _Judged:
     from lmap.procedures import Illustrated
 
     procedure = prepared.procedure
-    quantities, troubles = _quantities(prepared, results, _frames(results))
+    quantities, troubles = _quantities(prepared, results)
     units = {name: channel.unit for name, channel in prepared.channels.items()}
     criteria = _criteria(prepared, quantities, troubles, units)
     drawings: Sequence[Drawing] = ()
@@ -67,11 +68,47 @@ def _read(prepared: Prepared, results: Mapping[str, CaseOutcome]) -> _Judged:
     return _Judged(criteria, tuple(drawings))
 
 
-def _frames(results: Mapping[str, CaseOutcome]) -> dict[str, pl.DataFrame]:
-    import polars as pl
+class _Frames(Mapping[str, "pl.DataFrame"]):
+    """Frames of cases by label, each read when it is asked for; the last one stays at hand, the others are let go."""
 
-    read = {label: outcome.frame for label, outcome in results.items()}
-    return {label: pl.DataFrame() if frame is None else frame for label, frame in read.items()}
+    def __init__(self, results: Mapping[str, CaseOutcome]) -> None:
+        self._results = results
+        self._last: tuple[str, pl.DataFrame] | None = None
+
+    def __getitem__(self, label: str) -> pl.DataFrame:
+        import polars as pl
+
+        outcome = self._results[label]
+        if self._last is None or self._last[0] != label:
+            self._last = None  # before the next one is read
+            frame = outcome.frame
+            self._last = (label, pl.DataFrame() if frame is None else frame)
+        return self._last[1]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._results)
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+
+@dataclass(frozen=True, slots=True)
+class _AsTheyAre:
+    """Frames that are judged as the core recorded them."""
+
+    frames: _Frames
+
+    def frame(self, label: str) -> pl.DataFrame:
+        """Channels as the core recorded them."""
+        return self.frames[label]
+
+    def quantities(self, label: str) -> pl.DataFrame:
+        """The same."""
+        return self.frames[label]
+
+    def held(self) -> Mapping[str, Frames]:
+        """Nothing to read ahead."""
+        return {}
 
 
 class _Stored:
@@ -82,16 +119,18 @@ class _Stored:
 
     def frame(self, label: str) -> pl.DataFrame:
         """Channels as the core recorded them."""
-        return _frames({label: self._results[label]})[label]
+        return _Frames(self._results)[label]
 
     def quantities(self, label: str) -> pl.DataFrame:
         """What the criteria judged; takes the frames of all cases."""
-        return self.held()[label].judged
+        return self.held()[label].quantities(label)
 
-    def held(self) -> Mapping[str, Held]:
-        """All of them, read once, by label."""
-        frames = _frames(self._results)
-        quantities, _ = _quantities(self._prepared, self._results, frames)
+    def held(self) -> Mapping[str, Frames]:
+        """All of them, read once, by label; those that are judged as they are one at a time."""
+        quantities, _ = _quantities(self._prepared, self._results)
+        if isinstance(quantities, _Frames):
+            return dict.fromkeys(self._results, _AsTheyAre(quantities))
+        frames = _Frames(self._results)
         return {label: Held(frame, quantities.get(label, frame)) for label, frame in frames.items()}
 
 
@@ -135,20 +174,26 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
 
 
 def _quantities(
-    prepared: Prepared, results: Mapping[str, CaseOutcome], frames: Mapping[str, pl.DataFrame]
-) -> tuple[dict[str, pl.DataFrame], dict[str, str]]:
-    """What is judged, by label, and why a label cannot be: its run ended early, or the procedure says so."""
+    prepared: Prepared, results: Mapping[str, CaseOutcome]
+) -> tuple[Mapping[str, pl.DataFrame], dict[str, str]]:
+    """What is judged, by label, and why a label cannot be: its run ended early, or the procedure says so.
+
+    Frames that are judged as they are stay where they are until somebody asks.
+    """
     troubles = {label: outcome.trouble for label, outcome in results.items() if outcome.trouble is not None}
-    complete = {label: frame for label, frame in frames.items() if label not in troubles}
-    early = {label: frames[label] for label in troubles}
-    if not complete:
-        return early, troubles
+    good = {label: outcome for label, outcome in results.items() if label not in troubles}
+    every = _Frames(results)
+    if not good:
+        return every, troubles
+    complete = _Frames(good)
     try:
         made = prepared.procedure.quantities(prepared.spec, complete, prepared.vehicle.data)
     except JudgementProblem as problem:
-        return dict(frames), {label: str(problem) for label in complete} | troubles
-    order = [*(label for label in frames if label in made or label in early), *made]
-    return {label: made[label] if label in made else early[label] for label in order}, troubles
+        return every, {label: str(problem) for label in good} | troubles
+    if made is complete:
+        return every, troubles
+    order = [*(label for label in results if label in made or label in troubles), *made]
+    return {label: made[label] if label in made else every[label] for label in order}, troubles
 
 
 def _criteria(
@@ -164,31 +209,30 @@ def _criteria(
 
     look = prepared.look
     hashes = {case.label: case.hash for case in prepared.cases}
-    judged = dict(quantities) if look is None else {look.label: look.frame}
+    judged = quantities if look is None else {look.label: look.frame}
     if look is not None:
         hashes = {look.label: look.hash}
     found = []
-    for index, criterion in enumerate(prepared.spec.criterion):
-        labels = [label for label in judged if criterion.applies_to(label)]
-        for label in labels:
+    # Case by case, so that one frame at a time is needed; told criterion by criterion.
+    for label in judged:
+        of = hashes.get(label, "")
+        for index, criterion in enumerate(prepared.spec.criterion):
+            if not criterion.applies_to(label):
+                continue
             if not prepared.vehicle.data.declares(criterion.needs):
-                of = hashes.get(label, "")
                 found.append(not_assessed(criterion, index=index, label=label, case_hash=of))
                 continue
+            why = troubles.get(label)
             verdict = judge(
-                criterion,
-                judged[label],
-                units,
-                index=index,
-                label=label,
-                case_hash=hashes.get(label, ""),
-                ended=troubles.get(label),
+                criterion, judged[label], units, index=index, label=label, case_hash=of, ended=why
             )
             found.append(verdict)
-        if not labels:
+    for index, criterion in enumerate(prepared.spec.criterion):
+        if not any(criterion.applies_to(label) for label in judged):
             why = f"no case is called {listed(criterion.case or ())}: there are {listed(judged, 40)}"
             why = next(iter(troubles.values()), why)
             found.append(judge(criterion, pl.DataFrame(), units, index=index, ended=why))
+    found.sort(key=lambda verdict: verdict.index)
     if look is not None:
         found.append(look.by_person)
     return tuple(found)

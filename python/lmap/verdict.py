@@ -159,8 +159,8 @@ class Frames(Protocol):
     def quantities(self, label: str) -> pl.DataFrame:
         """What the criteria judged."""
 
-    def held(self) -> Mapping[str, Held]:
-        """All of them, read once, by label."""
+    def held(self) -> Mapping[str, Frames]:
+        """All of them by label, each read once or, where they are judged as they are, one at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +178,7 @@ class Held:
         """What the criteria judged."""
         return self.judged
 
-    def held(self) -> Mapping[str, Held]:
+    def held(self) -> Mapping[str, Frames]:
         """Nothing to read."""
         return {}
 
@@ -278,7 +278,7 @@ class SpecVerdict:
 
     def held(self) -> SpecVerdict:
         """The same with the frames of its cases in memory, each read once: for as long as they are plotted."""
-        read: dict[int, Mapping[str, Held]] = {}
+        read: dict[int, Mapping[str, Frames]] = {}
         cases = []
         for case in self.cases:
             if isinstance(case.frames, Held):

@@ -69,7 +69,7 @@ def test_contact_page_draws_every_figure_without_an_error(tmp_path: Path) -> Non
     assert "data-error" not in head
     assert int(head.split('data-plots="')[1].split('"')[0]) >= 7
     assert 'data-wide="false"' in head
-    assert 'data-after="7"' in head
+    assert 'data-after="8"' in head
 
 
 def opened(path: Path) -> str:

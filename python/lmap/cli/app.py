@@ -16,6 +16,10 @@ import typer
 from lmap.cli import cache, channels, check, contact, lint, list_, modes, new, run, schema, sweep, view
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
+# What frames leave behind goes back to the system at once: polars' allocator, read when polars is loaded, keeps it otherwise,
+# a quarter of the memory of a check.
+os.environ.setdefault("_RJEM_MALLOC_CONF", "dirty_decay_ms:0,muzzy_decay_ms:0")
+
 app = typer.Typer(
     name="lmap",
     help="Simulate railway locomotives and judge them by the locomotive model acceptance procedure.\n\n"

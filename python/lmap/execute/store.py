@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import io
 import json
 import os
 import shutil
@@ -43,6 +42,8 @@ KEPT_SHARE = 0.8
 STALE_S = 3600.0
 """A temporary file older than this was left by a process that was killed."""
 FORMAT = 1
+_ROWS = 4096
+"""In a group of a parquet file: what is written is collected group by group."""
 
 
 class LostFrame(LmapError):
@@ -82,9 +83,10 @@ class StoredFrame:
         import polars as pl
 
         try:
-            content = self.path.read_bytes()
-            if hashlib.sha256(content).hexdigest() == self.sha256:
-                return pl.read_parquet(io.BytesIO(content))
+            with self.path.open("rb") as stream:
+                whole = hashlib.file_digest(stream, "sha256").hexdigest() == self.sha256
+            if whole:  # read from the file: its bytes are never in memory beside the frame
+                return pl.read_parquet(self.path, memory_map=False)
         except (OSError, pl.exceptions.PolarsError):
             pass
         raise LostFrame(self.case_hash)
@@ -142,7 +144,7 @@ class Store:
 
         def write(temporary: Path) -> None:
             # light compression: doubles hardly shrink, and nobody waits for this
-            frame.write_parquet(temporary, compression="lz4", statistics=False)
+            frame.write_parquet(temporary, compression="lz4", statistics=False, row_group_size=_ROWS)
             with temporary.open("rb") as stream:
                 sums.append(hashlib.file_digest(stream, "sha256").hexdigest())
 
