@@ -286,7 +286,7 @@ class SpecVerdict:
                 continue
             if id(case.frames) not in read:
                 read[id(case.frames)] = case.frames.held()
-            cases.append(replace(case, frames=read[id(case.frames)][case.label]))
+            cases.append(replace(case, frames=read[id(case.frames)].get(case.label, case.frames)))
         return replace(self, cases=tuple(cases))
 
 

@@ -16,8 +16,8 @@ import typer
 from lmap.cli import cache, channels, check, contact, lint, list_, modes, new, run, schema, sweep, view
 from lmap.errors import EXIT_ERROR, EXIT_INTERRUPTED, LmapError
 
-# What frames leave behind goes back to the system at once: polars' allocator, which reads this when polars is loaded, keeps
-# it otherwise, a tenth of the memory of a check.
+# What frames leave behind goes back to the system at once: polars' allocator, which reads this when polars is loaded,
+# keeps it otherwise, a tenth of the memory of a check.
 os.environ.setdefault("_RJEM_MALLOC_CONF", "dirty_decay_ms:0,muzzy_decay_ms:0")
 
 app = typer.Typer(
