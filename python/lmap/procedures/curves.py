@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from lmap.criteria.units import STANDARD_GRAVITY
 from lmap.errors import InputProblem, Problem
+from lmap.formulas import CANT_BASE
 from lmap.procedures import wheel_forces
 from lmap.procedures.base import CaseFigures, expand, settings
 from lmap.procedures.speed_range import Slow, stepped
@@ -21,17 +23,9 @@ from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import RunPart, Spec
 from lmap.verdict import Fact
 
-if TYPE_CHECKING:
-    import polars as pl
-
 NAME = "curves"
 SUMMARY = "one run through each curve of a list, at its speed or its unbalanced acceleration"
 UNITS: Mapping[str, str] = {}
-
-CANT_BASE = 1.5
-"""m between the contact lines over which cant is measured, as in the core."""
-STANDARD_GRAVITY = 9.80665
-"""m/s2, of a spec that says nothing else, as in the core."""
 
 
 class _Table(BaseModel):
@@ -69,7 +63,7 @@ class Curve(_Table):
         return math.sqrt(square) if square > 0.0 else math.nan
 
 
-class Settings(_Table):
+class Settings(wheel_forces.Settings):
     """`[test]`."""
 
     curves: list[Curve] = Field(min_length=1)
@@ -83,11 +77,12 @@ class Settings(_Table):
     """Straight track after a second clothoid; 0: the run ends in the curve."""
     slow: list[Slow] = Field(default_factory=list)
     """As in `speed_range`."""
-    prudhomme_factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
-    """K of Prud'homme's limit: 1.0 for locomotives."""
 
 
 SETTINGS = Settings
+
+derived = wheel_forces.derived
+quantities = wheel_forces.quantities
 
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
@@ -136,19 +131,6 @@ def _layout(own: Settings, curve: Curve) -> tuple[list[dict[str, Any]], float]:
         parts.append({"kind": "clothoid", "length": own.transition_m})
         parts.append({"kind": "tangent", "length": own.exit_m})
     return parts, sum(float(part["length"]) for part in parts)
-
-
-def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
-    """The columns of `wheel_forces`."""
-    return wheel_forces.derived(channels)
-
-
-def quantities(
-    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
-) -> Mapping[str, pl.DataFrame]:
-    """The runs with the columns of `wheel_forces`."""
-    factor = settings(spec, Settings).prudhomme_factor
-    return wheel_forces.joined(spec, frames, vehicle, prudhomme_factor=factor)
 
 
 def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:

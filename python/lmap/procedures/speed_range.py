@@ -8,7 +8,7 @@ passes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -18,9 +18,6 @@ from lmap.procedures.base import CaseFigures, expand, settings
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
 from lmap.verdict import Fact
-
-if TYPE_CHECKING:
-    import polars as pl
 
 NAME = "speed_range"
 SUMMARY = "one run for each speed over irregularities, on straight track or in a curve"
@@ -48,7 +45,7 @@ class Slow(_Table):
     """In place of `run.integrator`; checked by the core."""
 
 
-class Settings(_Table):
+class Settings(wheel_forces.Settings):
     """`[test]`."""
 
     start: Place | None = None
@@ -57,11 +54,12 @@ class Settings(_Table):
     """Where the run ends; `track.length` if absent."""
     slow: list[Slow] = Field(default_factory=list)
     """The entry with the lowest `below_kmh` above a run's speed holds for it; else `run.integrator`."""
-    prudhomme_factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
-    """K of Prud'homme's limit: 1.0 for locomotives."""
 
 
 SETTINGS = Settings
+
+derived = wheel_forces.derived
+quantities = wheel_forces.quantities
 
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
@@ -96,19 +94,6 @@ def stepped(case: Case, slow: Sequence[Slow]) -> Case:
         return case
     nearest = min(fitting, key=lambda one: one.below_kmh)
     return Case(case.label, {**case.data, "run": {**run, "integrator": dict(nearest.integrator)}})
-
-
-def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
-    """The columns of `wheel_forces`."""
-    return wheel_forces.derived(channels)
-
-
-def quantities(
-    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
-) -> Mapping[str, pl.DataFrame]:
-    """The runs with the columns of `wheel_forces`."""
-    factor = settings(spec, Settings).prudhomme_factor
-    return wheel_forces.joined(spec, frames, vehicle, prudhomme_factor=factor)
 
 
 def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lmap.criteria.units import STANDARD_GRAVITY
 from lmap.errors import InputProblem, Problem
 from lmap.formulas import CANT_BASE, throw_centre, throw_end, unbalanced_acceleration
 from lmap.outline import closed
@@ -45,7 +46,6 @@ UNITS: Mapping[str, str] = {
     "throw_centre": "m",
     "throw_end": "m",
 }
-STANDARD_GRAVITY = 9.80665
 
 
 class Settings(BaseModel):

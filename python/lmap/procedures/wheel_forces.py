@@ -20,6 +20,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from pydantic import BaseModel, ConfigDict, Field
+
 from lmap.errors import JudgementProblem
 from lmap.formulas import nadal_limit, prudhomme_limit
 from lmap.procedures.base import unloading_units, wheelsets, with_unloading
@@ -29,6 +31,16 @@ from lmap.view.model import resolved
 
 if TYPE_CHECKING:
     import polars as pl
+
+
+class Settings(BaseModel):
+    """Keys of `[test]` that every procedure with these columns has."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    prudhomme_factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
+    """K of Prud'homme's limit: 1.0 for locomotives and passenger vehicles, 0.85 for wagons (UIC 518, EN 14363)."""
+
 
 STATIC = "static"
 """Label of the case at rest; the wheel profile's name follows where the spec names any."""
@@ -73,8 +85,8 @@ def _static_label(profile: str | None) -> str:
     return STATIC if profile is None else f"{STATIC} {profile}"
 
 
-def derived(channels: Mapping[str, str]) -> dict[str, str]:
-    """Name and unit of every column that `joined` may add to frames with these channels."""
+def derived(spec: Spec, channels: Mapping[str, str]) -> dict[str, str]:
+    """Name and unit of every column that `quantities` may add to frames with these channels."""
     axles = wheelsets(channels)
     bodies = [name.removesuffix(".theta") for name in channels if name.endswith(".theta")]
     added = unloading_units(channels) | {f"{axle}.prudhomme": "1" for axle in axles}
@@ -84,18 +96,15 @@ def derived(channels: Mapping[str, str]) -> dict[str, str]:
     return added
 
 
-def joined(
-    spec: Spec,
-    frames: Mapping[str, pl.DataFrame],
-    vehicle: VehicleData,
-    *,
-    prudhomme_factor: float,
-) -> dict[str, pl.DataFrame]:
+def quantities(
+    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
+) -> Mapping[str, pl.DataFrame]:
     """Frames of the runs with the columns above, by label; the static ones are left out.
 
-    `prudhomme_factor` is K: 1.0 for locomotives and passenger vehicles, 0.85 for wagons (UIC 518, EN 14363).
     Raises a `JudgementProblem` where the vehicle at rest is missing.
     """
+    own = {key: value for key, value in spec.test.items() if key in Settings.model_fields}
+    factor = Settings.model_validate(own).prudhomme_factor
     groups = wheels_under(vehicle)
     result = {}
     for label, frame in frames.items():
@@ -105,7 +114,7 @@ def joined(
         if at_rest is None:
             raise JudgementProblem("the vehicle at rest was not found: there are no static wheel loads")
         result[label] = with_unloading(frame, at_rest).with_columns(
-            _columns(at_rest, groups, friction=_friction(spec), prudhomme_factor=prudhomme_factor)
+            _columns(at_rest, groups, friction=_friction(spec), prudhomme_factor=factor)
         )
     return result
 
