@@ -399,6 +399,23 @@ struct Axle<'a> {
     deviation: Deviation,
 }
 
+/// Angle of a contact's normal to the vertical, by its functions: most contacts of this kind have none to work out.
+#[derive(Debug, Clone, Copy)]
+struct Lean {
+    sin: f64,
+    cos: f64,
+    tan: f64,
+}
+
+impl Lean {
+    const NONE: Self = Self { sin: 0.0, cos: 1.0, tan: 0.0 };
+
+    fn of(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { sin, cos, tan: sin / cos }
+    }
+}
+
 impl Axle<'_> {
     /// One wheel: place it on its rail, look its contacts up, give each its normal force and ask for its creep force. Gives
     /// back the pose with which the wheel left the table.
@@ -441,9 +458,12 @@ impl Axle<'_> {
                 let rail = rail_pose(sigma, half, &self.deviation, &self.track, self.k.s_dot);
                 let pose = wheel_pose(sigma, self.q, self.k, half, radius, 0.0, &rail);
                 wheel.lift(pose.shift);
-                let lean =
-                    if book.gravity_stiffness { book.conicity.atan() - sigma * self.q[3] } else { 0.0 };
-                let depth = pose.depth + lean.tan() * pose.shift;
+                let lean = if book.gravity_stiffness {
+                    Lean::of(book.conicity.atan() - sigma * self.q[3])
+                } else {
+                    Lean::NONE
+                };
+                let depth = pose.depth + lean.tan * pose.shift;
                 if depth > 0.0 {
                     *wheel.add() = self.textbook(book, sigma, pose.shift, depth, lean, rail.surface_velocity);
                 }
@@ -452,7 +472,7 @@ impl Axle<'_> {
         Ok(())
     }
 
-    /// `lean` (rad) is the normal's inward, `surface` the velocity of the running surface, side coordinates.
+    /// `lean` is the normal's inward, `surface` the velocity of the running surface, side coordinates.
     #[inline(always)]
     fn textbook(
         &self,
@@ -460,7 +480,7 @@ impl Axle<'_> {
         sigma: f64,
         shift: f64,
         depth: f64,
-        lean: f64,
+        lean: Lean,
         surface: [f64; 2],
     ) -> ContactForce {
         let half = sigma * self.set.tape_half_distance;
@@ -469,8 +489,7 @@ impl Axle<'_> {
         let rail = Vec3::new(0.0, self.track.vy, self.track.vz + half * self.track.vphi);
         let v_wheel = self.k.v_T + self.w_T.cross(&lever);
         let slip = v_wheel - rail;
-        let (sin, cos) = lean.sin_cos();
-        let rate = v_wheel.z - surface[1] + lean.tan() * (sigma * v_wheel.y - surface[0]);
+        let rate = v_wheel.z - surface[1] + lean.tan * (sigma * v_wheel.y - surface[0]);
         let creepage = Creepage {
             xi: slip.x / self.speed,
             eta: sigma * slip.y / self.speed,
@@ -483,7 +502,7 @@ impl Axle<'_> {
                 lever,
                 point: [half + self.track.y, self.track.z],
                 e_t: Vec3::new(0.0, sigma, 0.0),
-                e_n: Vec3::new(0.0, -sigma * sin, -cos),
+                e_n: Vec3::new(0.0, -sigma * lean.sin, -lean.cos),
                 penetration: depth,
                 approach_rate: rate,
                 slip: [slip.x, sigma * slip.y],

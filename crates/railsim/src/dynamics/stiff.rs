@@ -7,7 +7,7 @@ use crate::dynamics::model::{Contact, Model};
 use crate::dynamics::rhs::{LEAST_ROLLING_SPEED, patch};
 use crate::dynamics::scratch::{ContactForce, Scratch};
 use crate::dynamics::state::PAIR;
-use crate::equipment::CONTACT_DAMPING;
+use crate::equipment::stick::CONTACT_DAMPING;
 use crate::math::Vec3;
 use crate::math::cube_root::cube_root;
 
