@@ -29,7 +29,7 @@ class Heard(Progress):
     def __init__(self) -> None:
         self.events: list[tuple[Any, ...]] = []
 
-    def begin(self, cases: Any, jobs: int, known: int = 0) -> None:
+    def begin(self, cases: Any, jobs: int, known: int = 0, about: int = 0) -> None:
         self.events.append(("begin", list(cases), jobs))
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:

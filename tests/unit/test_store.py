@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -26,9 +26,10 @@ def ran(fake_core: ModuleType, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     labels: list[str] = []
     really = fake_core.run_cases
 
-    def counted(cases: list[str], *others: Any) -> None:
-        labels.extend(json.loads(case)["label"] for case in cases)
-        really(cases, *others)
+    def counted(cases: Iterable[str], *others: Any) -> None:
+        texts = list(cases)
+        labels.extend(json.loads(case)["label"] for case in texts)
+        really(texts, *others)
 
     monkeypatch.setattr(fake_core, "run_cases", counted)
     return labels
