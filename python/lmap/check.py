@@ -278,7 +278,7 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
 
     Within, not beside: `folder` may be a file system of its own, and what is above it not ours to write. A
     check that is interrupted before it is judged leaves what was there before, no folder where there was none. The page
-    comes last. Cases of an earlier check stay beside this one's.
+    comes last. A folder holds one report: cases of an earlier one in it are removed, and nothing else.
     """
     from lmap.report import write_report as write
 
@@ -293,6 +293,7 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
                 target = folder / path.relative_to(partial)
                 _make_folder(target.parent, created)
                 path.replace(target)
+            _remove_cases(folder / "cases", keep={path.name for path in made})
         finally:
             shutil.rmtree(partial, ignore_errors=True)
     except OSError as error:
@@ -303,6 +304,14 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
         for one in reversed(created):
             with contextlib.suppress(OSError):  # what holds something stays
                 one.rmdir()
+
+
+def _remove_cases(folder: Path, keep: builtins.set[str]) -> None:
+    """Removes the cases that another report has left: files that are called by a hash."""
+    for path in folder.glob("*.*") if folder.is_dir() else ():
+        if path.name not in keep and re.fullmatch(r"[0-9a-f]{64}\.(json|parquet)", path.name):
+            with contextlib.suppress(OSError):
+                path.unlink()
 
 
 def _make_folder(folder: Path, created: list[Path]) -> None:
