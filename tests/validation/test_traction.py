@@ -110,8 +110,8 @@ def test_adhesion_curve_of_figure_5(
 
 SECONDARY = {"kx": 1.5e5, "kz": 5.8e5, "x": 0.90, "z": 1.05}
 """Of coco134: each of the four springs of a bogie, N/m and m."""
-AS_THE_FORMULA_SAYS = {"secondary.kx": 1.5e3, "secondary.x": 0.05}
-"""Springs that pass on neither pull nor a bogie's pitch, so that all of the pull leaves the bogie at its pivot."""
+AS_THE_FORMULA_SAYS = {"secondary.kx": 1.5e3, "secondary.x": 0.05, "centre_pivot.kx": 4.0e8}
+"""Springs that pass on neither pull nor a bogie's pitch, a pivot that does not give."""
 
 
 def load_shift(overrides: Mapping[str, float] | None = None) -> tuple[float, list[float]]:
@@ -121,15 +121,16 @@ def load_shift(overrides: Mapping[str, float] | None = None) -> tuple[float, lis
         "effort_limit": 300e3,
         "hold_speed": True,
         "resistance": False,
-        "until": {"time": 8.0},
+        "until": {"time": 17.0},
     }
     frame = run("dry", drive, overrides=overrides)
 
+    # What holds the speed is a spring: the vehicle swings on it with a period of 3.5 s, which 15 s let die away.
     def gained(w: int) -> float:
         names = [f"ws{w}.{side}.Q" for side in ("left", "right")]
-        return sum(mean(frame, name, 7.0, 8.0) - float(frame[name][0]) for name in names)
+        return sum(mean(frame, name, 15.0, 17.0) - float(frame[name][0]) for name in names)
 
-    return mean(frame, "traction.effort", 7.0, 8.0), [gained(w) for w in range(1, 7)]
+    return mean(frame, "traction.effort", 15.0, 17.0), [gained(w) for w in range(1, 7)]
 
 
 def between_bogies(gains: list[float]) -> float:
@@ -137,10 +138,12 @@ def between_bogies(gains: list[float]) -> float:
 
 
 def with_secondary_springs(effort: float) -> float:
-    """What the rear bogie gains, N, in closed form with what the secondary springs pass on beside the pivot.
+    """What the rear bogie gains, N, in closed form with what the secondary springs do beside the pivot.
 
-    They share the pull, at their own height; and being 0.90 m before and behind the bogie's centre they pass on some
-    of its pitch under F_b h, which the primary springs, on the track, leave.
+    They share the pull, at their own height. Being 0.90 m before and behind the bogie's centre they pass on some of
+    its pitch under F_b h, which the primary springs, on the track, leave. And the car body hangs back by what pivot
+    and springs give: half of its weight times that turns it (a coil between parallel plates, docs of `bushing`), the
+    other half the bogies.
     """
     shear, pivot = 4 * SECONDARY["kx"], 2.0e7
     height = (pivot * 0.80 + shear * SECONDARY["z"]) / (pivot + shear)
@@ -155,14 +158,15 @@ def with_secondary_springs(effort: float) -> float:
     determinant = matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0]
     bogie = (right[0] * matrix[1][1] - matrix[0][1] * right[1]) / determinant
     car = (matrix[0][0] * right[1] - matrix[1][0] * right[0]) / determinant
-    return (couple + 2 * secondary * (bogie - car)) / 13.2
+    back = 0.5 * effort / (pivot + shear) - (bogie - car) * (SECONDARY["z"] - height)
+    return (couple + 2 * secondary * (bogie - car) + 0.5 * 87_180 * G * back) / 13.2
 
 
 def test_axle_loads_shift_by_the_hand_formula(compare: Compare) -> None:
     """F_b h_p/(2 x 1.90 m) for the outer axles of a bogie, F (0.90 - h_p)/13.2 m between the bogies.
 
     The formula lets all of the pull leave a bogie at its pivot and nothing else turn the car body. Between the bogies
-    the secondary springs of coco134 add to that; without what they pass on the formula stands.
+    the secondary springs of coco134 add to that; without what they do the formula stands.
     """
     for name, overrides in (("coco134", None), ("springs as the formula says", AS_THE_FORMULA_SAYS)):
         effort, gains = load_shift(overrides)
@@ -172,11 +176,11 @@ def test_axle_loads_shift_by_the_hand_formula(compare: Compare) -> None:
             outer = 0.5 * (gains[first + 2] - gains[first])
             what = f"{name}: outer axles, ws{first + 1} to ws{first + 3}, N"
             compare(what, outer, by_hand, 0.05 * by_hand, "hand formula")
-        between = effort * (0.90 - 0.80) / 13.2
+        between, source = effort * (0.90 - 0.80) / 13.2, "hand formula"
         if overrides is None:
-            between = with_secondary_springs(effort)
-        what = f"{name}: between the bogies, N"
-        compare(what, between_bogies(gains), between, 0.05 * between, "hand formula")
+            # the formula's own number is 2.27 kN
+            between, source = with_secondary_springs(effort), "closed form with the secondary springs"
+        compare(f"{name}: between the bogies, N", between_bogies(gains), between, 0.05 * between, source)
 
 
 def test_what_load_transfer_costs_on_wet_rail(compare: Compare) -> None:
@@ -190,7 +194,7 @@ def test_what_load_transfer_costs_on_wet_rail(compare: Compare) -> None:
 
 def test_sand_comes_and_goes_after_its_delay(compare: Compare) -> None:
     """Polach's force goes with the coefficient of friction where slip is large: what sand adds, and when."""
-    sanding = {"demand": [[4.0, 1], [6.0, 0]], "delay": 1.0, "friction_factor": 1.3}
+    sanding = {"demand": [[8.0, 1], [10.0, 0]], "delay": 1.0, "friction_factor": 1.3}
     drive = {
         "notch": 8,
         "slip_control": False,
@@ -198,20 +202,15 @@ def test_sand_comes_and_goes_after_its_delay(compare: Compare) -> None:
         "resistance": False,
         "effort_limit": 120e3,
         "sanding": sanding,
-        "until": {"time": 8.0},
+        "until": {"time": 12.0},
     }
     frame = run("wet", drive)
-    slip = {at: mean(frame, "ws1.slip", at, at + 0.4) for at in (4.4, 5.6, 7.6)}
+    wet, dry_sand, last = (mean(frame, "ws1.slip", *w) for w in ((8.5, 8.98), (9.2, 10.98), (11.5, 12.0)))
     # The same effort with more friction: less slip, and back again.
-    compare("slip before sand, over slip after it", slip[4.4] / slip[7.6], 1.0, 0.02, "the same rail")
-    assert slip[5.6] < 0.97 * slip[4.4]
-    changed = [
-        float(t)
-        for t, a in zip(frame["t"], frame["ws1.slip"], strict=True)
-        if t > 3.5 and a < 0.985 * slip[4.4]
-    ]
-    assert 5.0 <= changed[0] <= 5.3, changed[0]
-    assert 6.98 <= changed[-1] <= 7.3, changed[-1]
+    compare("slip before sand, over slip after it", wet / last, 1.0, 0.01, "the same rail")
+    early, late = mean(frame, "ws1.slip", 9.2, 9.5), mean(frame, "ws1.slip", 10.7, 10.98)
+    compare("slip on sand, first over last of it", early / late, 1.0, 0.01, "the same rail")
+    assert dry_sand < 0.95 * wet, (dry_sand, wet)
 
 
 def test_motors_with_a_rating_are_judged_and_undersized_ones_fail(tmp_path: Path) -> None:
@@ -232,10 +231,19 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
     (spec,) = lmap.check(SPECS / "coupler_forces_run.toml").specs
     frames = {case.label: case.frame for case in spec.cases}
     radius, length = 160.0, 22.0
-    # While the vehicle and that neighbour stand in the first curve, 60 to 110 m, with all their bogies.
-    for end, begin, last in (("front", 70.0, 80.0), ("rear", 92.0, 102.0)):
-        angle = mean_at(frames["draft"], f"coupler.{end}.angle", begin, last)
-        compare(f"angle of the {end} coupler, mrad", 1e3 * angle, 1e3 * length / (2 * radius), 4.0, "L/2R")
+    # While vehicle and neighbour stand in the first curve, 60 to 110 m, with all their bogies. L/2R is for a body
+    # on its chord; ours stands beside that, by `aside` at the coupler's pivot, which is 1.5 m from the neighbour's.
+    for end, begin, last in ((1, 70.0, 80.0), (-1, 92.0, 102.0)):
+        name = {1: "front", -1: "rear"}[end]
+        for way in ("draft", "buff"):
+            y, phi, psi, angle = (
+                mean_at(frames[way], channel, begin, last)
+                for channel in ("carbody.y", "carbody.phi", "carbody.psi", f"coupler.{name}.angle")
+            )
+            aside = y - 1.05 * phi - 13.2**2 / (8 * radius) + end * (length / 2 - 0.75) * psi
+            closed = length / (2 * radius) - aside / 1.5 - end * psi
+            what = f"angle of the {name} coupler, {way}, mrad"
+            compare(what, 1e3 * angle, 1e3 * closed, 2.0, "L/2R with the body where it stands")
     train = frames["train, hauling"]
     slope = G * math.sin(math.atan(0.025))
     for end, mass in (("front", -2 * 134e3), ("rear", 30 * 120e3)):
@@ -247,7 +255,7 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
         own = 30 * 2.5e3 if end == "rear" else -2 * 25.3e3
         efforts = 2 * 340e3 if end == "front" else 0.0
         by_hand = mass * slope + (mass + own) * rising + resistance + efforts
-        compare(f"pull in the {end} coupler, N", found, by_hand, 0.03 * by_hand, "weight, inertia, effort")
+        compare(f"pull in the {end} coupler, N", found, by_hand, 0.03 * by_hand, "without curve resistance")
 
 
 def test_the_printed_train_cannot_hold_its_speed(compare: Compare) -> None:

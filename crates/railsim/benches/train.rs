@@ -31,6 +31,9 @@ fn main() {
         let outcome = simulate(&case, &Free).unwrap_or_else(|e| panic!("{e}"));
         let wall = begun.elapsed().as_secs_f64();
         let done = common::column(&outcome.columns, "t").last().copied().unwrap_or_default();
-        println!("locomotive and {wagons} wagons: {done:.1} s in {wall:.2} s, {:.1} times real time", done / wall);
+        println!(
+            "locomotive and {wagons} wagons: {done:.1} s in {wall:.2} s, {:.1} times real time",
+            done / wall
+        );
     }
 }

@@ -170,7 +170,10 @@ fn efforts_along_the_train_add_up_and_share_the_coupling_forces() {
     let (front, rear) = (200e3 - 260e3 * a, (6.0 * 60e3 + 120e3) * a - 150e3);
     let leads = [[x[0], x[1]]; 2];
     let found = [2, 3].map(|i| line.wagons.force(leads, &x[2..], i));
-    println!("a {:.5} by hand {a:.5} m/s2; front {:.0} by hand {front:.0} N, rear {:.0} by hand {rear:.0} N", dx[1], found[0], found[1]);
+    println!(
+        "a {:.5} by hand {a:.5} m/s2; front {:.0} by hand {front:.0} N, rear {:.0} by hand {rear:.0} N",
+        dx[1], found[0], found[1]
+    );
     assert!((dx[1] - a).abs() < 1e-4 * a);
     assert!((found[0] - front).abs() < 1e-3 * front && (found[1] - rear).abs() < 1e-3 * rear);
 }

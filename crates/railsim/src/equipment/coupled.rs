@@ -102,10 +102,8 @@ impl Acting<'_> {
         if let Some(train) = &self.design.train {
             let at = self.train_at();
             let range = at..at + train.states();
-            let on = |i: usize| OnMass {
-                brake: self.wagon_brakes[i],
-                effort: self.efforts[i].at(t, self.lag),
-            };
+            let on =
+                |i: usize| OnMass { brake: self.wagon_brakes[i], effort: self.efforts[i].at(t, self.lag) };
             let leads = self.leads(model, x, speed);
             pulls = train.rates(&model.layout, leads, on, &x[range.clone()], &mut dx[range]);
         }
@@ -183,8 +181,13 @@ mod tests {
         let segments: Vec<Segment> = serde_json::from_value(segments.clone()).expect("segments");
         let length = segments.iter().map(Segment::length).sum();
         let layout = Layout::new(&segments, length, &KeyPath::of("track.layout")).expect("layout");
-        let written =
-            Couplers { shank: 0.75, neighbour_length: None, neighbour_pivots: None, front: vec![], rear: vec![] };
+        let written = Couplers {
+            shank: 0.75,
+            neighbour_length: None,
+            neighbour_pivots: None,
+            front: vec![],
+            rear: vec![],
+        };
         let angled = Angled { written, length: LENGTH, pivots: PIVOTS, height: HEIGHT };
         let k = standing(&layout, s);
         ENDS.map(|end| {
