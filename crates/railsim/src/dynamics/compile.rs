@@ -11,6 +11,7 @@ use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
+use crate::equipment::coupled::{Angled, ENDS};
 use crate::equipment::train::Wagons;
 use crate::equipment::{Bogie, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
@@ -87,25 +88,54 @@ fn equipment(case: &Case, model: &Model) -> Result<Option<Equipment>> {
             .max_by(|a, b| model.bodies[*a].mass.total_cmp(&model.bodies[*b].mass))
             .ok_or_else(|| Error::input(Fault::new(KeyPath::of("vehicle.body"), "none", "a car body")))?,
     };
-    let point = vehicle
-        .outline
-        .as_ref()
-        .map_or(Vec3::zeros(), |o| Vec3::new(-0.5 * o.length_over_couplers, 0.0, -o.coupler_height));
-    let coupler = (body, point - model.bodies[body].position);
+    let [front, rear] = ENDS.map(|end| {
+        let face = vehicle
+            .outline
+            .as_ref()
+            .map_or(Vec3::zeros(), |o| Vec3::new(0.5 * end * o.length_over_couplers, 0.0, -o.coupler_height));
+        face - model.bodies[body].position
+    });
+    let bogies = bogies(model)?;
     let parking = vehicle.parking_brake.as_ref().map(|brake| {
         let on = vehicle.wheelsets.iter().map(|w| brake.wheelsets.contains(&w.name)).collect();
         (brake.clone(), on)
     });
     Ok(Some(Equipment {
         drive: drive.clone(),
-        bogies: bogies(model)?,
+        angled: angled(case, model, &bogies)?,
+        bogies,
         traction: vehicle.traction.clone(),
         dynamic_brake: vehicle.dynamic_brake,
         air_brake: vehicle.air_brake.clone(),
         parking,
-        train: case.run.train.clone().map(|written| Wagons { written, gravity: case.run.gravity }),
-        coupler,
+        train: case.run.train.clone().map(|written| Wagons::new(written, case.run.gravity)),
+        coupler: (body, rear),
+        front,
     }))
+}
+
+/// Couplers at an angle between the vehicle and its neighbours.
+fn angled(case: &Case, model: &Model, bogies: &[Bogie]) -> Result<Option<Angled>> {
+    let Some(written) = &case.run.couplers else { return Ok(None) };
+    let at = KeyPath::of("run.couplers");
+    let Some(outline) = &case.vehicle.outline else {
+        let found = "it with a vehicle without [outline]";
+        return Err(Error::input(Fault::new(at, found, "its length over couplers and coupler height there")));
+    };
+    let places = bogies.iter().map(|b| model.bodies[b.body].position.x);
+    let (rear, front) = places.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+    let length = written.neighbour_length.unwrap_or(outline.length_over_couplers);
+    let pivots = written.neighbour_pivots.unwrap_or(front - rear);
+    if !(pivots > 0.0 && pivots < length) {
+        let allowed = format!("above 0 and below the neighbour's length of {length} m");
+        return Err(Error::input(Fault::new(at.key("neighbour_pivots"), format!("{pivots} m"), allowed)));
+    }
+    let least = 0.5 * outline.length_over_couplers.min(length);
+    if written.shank >= least {
+        let allowed = format!("below half the length of either vehicle, {least} m");
+        return Err(Error::input(Fault::new(at.key("shank"), format!("{} m", written.shank), allowed)));
+    }
+    Ok(Some(Angled { written: written.clone(), length, pivots, height: outline.coupler_height }))
 }
 
 /// What the driver asks for must be there.

@@ -207,21 +207,19 @@ impl<'m> VehicleSystem<'m> {
         let mut cases = scratch.creep_cases.iter_mut();
         for (w, wheels) in scratch.wheels.iter_mut().enumerate() {
             for (side, wheel) in wheels.iter_mut().enumerate() {
-                let mut first = true;
+                let mut count = 0;
                 for contact in wheel.contacts_mut().iter_mut().filter(|c| c.creeps) {
                     let Some(case) = cases.next() else { return };
                     case.mu *= acting.sand();
-                    if first {
-                        let steady = [case.creepage.xi, case.creepage.eta];
-                        let known = Some((contact.placed.slip, steady, case.patch.a));
-                        let given = acting.creepage(self.model, self.map, (w, side), known, x);
-                        [case.creepage.xi, case.creepage.eta] = given;
-                        contact.placed.creepage = case.creepage;
-                        first = false;
-                    }
+                    let steady = [case.creepage.xi, case.creepage.eta];
+                    let known = Some((contact.placed.slip, steady, case.patch.a));
+                    let given = acting.creepage(self.model, self.map, (w, side, count), known, x);
+                    [case.creepage.xi, case.creepage.eta] = given;
+                    contact.placed.creepage = case.creepage;
+                    count += 1;
                 }
-                if first {
-                    acting.creepage(self.model, self.map, (w, side), None, x);
+                for none in count..MAX_CONTACTS {
+                    acting.creepage(self.model, self.map, (w, side, none), None, x);
                 }
             }
         }
