@@ -362,7 +362,7 @@ fn averages_are_of_the_load_that_is_asked_for() {
     value["vehicle"]["contact"]["averaging_load"] = json!(4.0 * LOAD);
     let table = geometry_table(&common::case(&value)).unwrap();
     let (wheel, rail) = profiles();
-    assert_eq!(table, GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap());
+    assert_eq!(*table, GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap());
     let within = judge("table of 40 kN", |row| by_table(&table, row));
     assert!(within[0] < 20 && within[1] < 18);
 }

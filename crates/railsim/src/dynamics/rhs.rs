@@ -3,6 +3,7 @@
 use crate::body::{Wrench, kinematics, rigid_body, steady_speeds, wheelset};
 use crate::contact::creep::CreepLaw;
 use crate::contact::creepage::{TrackMotion, track_roll};
+use crate::contact::geometry_table::MAX_CONTACTS;
 use crate::dynamics::axle::{Axle, total_force};
 use crate::dynamics::joints::Joints;
 use crate::dynamics::model::{Contact, Model};
@@ -11,7 +12,7 @@ use crate::dynamics::state::{PAIR, StateMap, WHEELSET, array, array_mut};
 use crate::dynamics::stiff;
 use crate::equipment::Acting;
 use crate::integrator::{StiffBlock, System};
-use crate::math::Vec3;
+use crate::math::{Vec3, widest};
 use crate::track::Deviation;
 
 /// Below this rolling speed (m/s) creepages are formed with it instead, so that standstill stays finite.
@@ -353,7 +354,7 @@ impl System for VehicleSystem<'_> {
     }
 
     fn rhs(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.stages_best(t, x, dx);
+        widest::run(&mut Stages { system: self, t, x, dx });
     }
 
     fn stiff_blocks(&self) -> &[StiffBlock] {
@@ -370,30 +371,22 @@ impl System for VehicleSystem<'_> {
     }
 }
 
+/// An evaluation, in the widest registers that there are.
+struct Stages<'a, 'm> {
+    system: &'a mut VehicleSystem<'m>,
+    t: f64,
+    x: &'a [f64],
+    dx: &'a mut [f64],
+}
+
+impl widest::Work for Stages<'_, '_> {
+    #[inline(always)]
+    fn run(&mut self) {
+        self.system.stages(self.t, self.x, self.dx);
+    }
+}
+
 impl VehicleSystem<'_> {
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)] // the one way to call code for instructions that not every processor has
-    fn stages_best(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has just said that it has AVX2.
-            unsafe { self.stages_avx2(t, x, dx) }
-        } else {
-            self.stages(t, x, dx);
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    fn stages_best(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.stages(t, x, dx);
-    }
-
-    /// The same stages in wider registers. Nothing fuses a multiplication with an addition: the same bytes.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn stages_avx2(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.stages(t, x, dx);
-    }
-
     /// The right-hand side ([`System::rhs`]) with the instructions that every processor has.
     // Stages and what they call are `inline(always)`, so that they are compiled again for wider ones.
     #[inline(always)]
