@@ -271,6 +271,8 @@ class SpecVerdict:
     inputs: tuple[InputFile, ...] = ()
     overrides: Mapping[str, Any] = field(default_factory=dict)
     """What `[set]` and `--set` changed."""
+    assumed: str = ""
+    """What of the test itself, beside its limits, is assumed, and why."""
     drawing: Mapping[str, Any] | None = None
     """Plain data of the vehicle's 3D page, where the procedure draws one."""
     drawings: tuple[Drawing, ...] = ()
