@@ -4,7 +4,7 @@ Everything that runs for long releases the GIL. Documents, cases and overrides c
 was written. SI units; profiles alone are in millimetres, as their files are.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, TypedDict, final
 
 from typing_extensions import Buffer, CapsuleType
@@ -335,13 +335,16 @@ def contact_map(
     """
 
 def run_cases(
-    cases: Sequence[str],
+    cases: Iterable[str],
     jobs: int,
     on_progress: Callable[[int, float, float, float], object],
     on_done: Callable[[int, Frame | RailsimError], object],
     tables: Tables | None = None,
 ) -> None:
     """Run cases on `jobs` threads, begun in their order; returns when the last one has ended.
+
+    `cases` is asked for the next case when a thread is free, on that thread; an exception in it stops every run as one
+    from a callback does.
 
     Both callbacks are called on the calling thread: `on_progress(index, fraction, distance_m,
     real_time_factor)` about ten times a second for each case that is on its way, `on_done(index, result)`

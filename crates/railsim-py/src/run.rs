@@ -1,11 +1,13 @@
 //! Cases: checking, running, and what a run records.
 
 use std::collections::BTreeMap;
+use std::iter::once;
 use std::num::NonZeroUsize;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::pybacked::PyBackedStr;
+use pyo3::types::{PyDict, PyIterator};
 use railsim::KeyPath;
 use railsim::analysis;
 use railsim::run::{Action, Law, Outcome, Outside, simulate_controlled};
@@ -68,12 +70,13 @@ pub fn track_extremes(
     Ok(["lateral", "vertical", "cross_level", "gauge"].into_iter().zip(extremes).collect())
 }
 
-/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks.
+/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks. `cases` may be any iterable of
+/// JSON: it is asked for the next one when a thread is free, on that thread.
 #[pyfunction]
 #[pyo3(signature = (cases, jobs, on_progress, on_done, tables=None))]
 pub fn run_cases(
     py: Python<'_>,
-    cases: Vec<String>,
+    cases: &Bound<'_, PyAny>,
     jobs: NonZeroUsize,
     on_progress: Py<PyAny>,
     on_done: Py<PyAny>,
@@ -83,10 +86,10 @@ pub fn run_cases(
     let tables = tables.map(|t| t.tables.clone()).unwrap_or_default();
     enter(
         py,
-        cases.len(),
+        Texts(cases.try_iter()?.unbind()),
         jobs,
-        |index, control| {
-            let mut case = Case::from_json(&cases[index])?;
+        |text: PyBackedStr, control| {
+            let mut case = Case::from_json(&text)?;
             case.tables = tables.clone();
             analysis::run(&case, control)
         },
@@ -109,15 +112,26 @@ pub fn run_controlled(
     let controller = &controller;
     enter(
         py,
-        1,
+        once(Ok(case_json)),
         NonZeroUsize::MIN,
-        |_, control| {
+        |case_json: String, control| {
             let mut law = PythonLaw { controller, channels: &channels };
             let mut outside = Outside { name: name.clone(), channels: channels.clone(), law: &mut law };
             simulate_controlled(&Case::from_json(&case_json)?, control, &mut outside)
         },
         &mut Callbacks { on_progress, on_done },
     )
+}
+
+/// What a Python iterator gives.
+struct Texts(Py<PyIterator>);
+
+impl Iterator for Texts {
+    type Item = PyResult<PyBackedStr>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        Python::attach(|py| self.0.bind(py).clone().next().map(|text| Ok(text?.extract()?)))
+    }
 }
 
 /// A Python function as control law.
