@@ -38,7 +38,6 @@ __all__ = [
     "read_profile",
     "rolling_radius_difference",
     "run_cases",
-    "run_controlled",
     "smooth_profile",
     "toml_line",
     "toml_to_json",
@@ -63,6 +62,12 @@ class _Ended(TypedDict):
     t: float | None  # s; of the last row, or of the divergence
     s: float | None  # m
     message: str | None
+
+class _Law(TypedDict):
+    name: str
+    channels: Sequence[str]
+    outputs: Sequence[str]
+    sample: Callable[[float, float, list[float]], Sequence[float | None]]
 
 class RailsimError(Exception):
     """Base of everything the core raises."""
@@ -340,8 +345,15 @@ def run_cases(
     on_progress: Callable[[int, float, float, float], object],
     on_done: Callable[[int, Frame | RailsimError], object],
     tables: Tables | None = None,
+    laws: Mapping[int, _Law] | None = None,
 ) -> None:
     """Run cases on `jobs` threads, begun in their order; returns when the last one has ended.
+
+    `laws` gives control laws by the index of their case. `sample(t, period, seen)` is called on the thread of that
+    case every `run.drive.period`, with the time, the period (s) and the values of `channels`; it gives a value for
+    each of `outputs` (`<wheelset>.torque` and `<bogie>.torque`, N m; `independent_brake`, Pa), `None` for what stays
+    with the vehicle's own controllers. An exception in it, or an answer that is no finite number, is the case's
+    failure and names `name`.
 
     Both callbacks are called on the calling thread: `on_progress(index, fraction, distance_m,
     real_time_factor)` about ten times a second for each case that is on its way, `on_done(index, result)`
@@ -349,21 +361,6 @@ def run_cases(
 
     An exception from a callback stops every run, within a step, and is raised again; so does Ctrl-C, as
     `KeyboardInterrupt`, within a second.
-    """
-
-def run_controlled(
-    case_json: str,
-    name: str,
-    channels: Sequence[str],
-    controller: Callable[[float, dict[str, float]], Mapping[str, float | Sequence[float]] | None],
-    on_progress: Callable[[int, float, float, float], object],
-    on_done: Callable[[int, Frame | RailsimError], object],
-) -> None:
-    """`run_cases` of one case with a control law at every sample of `run.drive.period`.
-
-    `controller(t, seen)` is called on another thread with the time (s) and the `channels` by name; it gives
-    `torque` (N m, a number for each wheelset) and `independent_brake` (Pa), either or none. `name` is what
-    messages call it. An exception in it, or an answer that is no finite number, is the case's failure.
     """
 
 def _run_probes(

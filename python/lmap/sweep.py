@@ -144,7 +144,8 @@ def _judged(
 ) -> Iterator[tuple[int, SpecVerdict]]:
     if prepared:
         numbers = list(prepared)
-        verdicts = judge_all([prepared[number] for number in numbers], store, jobs=jobs, progress=progress)
+        cases = [prepared[number] for number in numbers]
+        verdicts = judge_all(cases, store, jobs=jobs, progress=progress, tolerant=True)
         yield from zip(numbers, verdicts, strict=True)
 
 

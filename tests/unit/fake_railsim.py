@@ -261,6 +261,7 @@ def run_cases(
     on_progress: Callable[[int, float, float, float], None],
     on_done: Callable[[int, Any], None],
     tables: Tables | None = None,
+    laws: dict[int, Any] | None = None,
 ) -> None:
     # last first: results must find their own place
     for index in reversed(range(len(cases))):

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import Any
 
 import polars as pl
 
 from lmap import toml
+from lmap.errors import Problem
 from lmap.execute.cost import estimate
 from lmap.execute.progress import Entry, Progress
 from lmap.execute.store import Store, StoredFrame
-from lmap.spec.case import Case
+from lmap.spec.case import Case, Control
 from lmap.verdict import NO_EXTENT, Extent
 
 END_OF_TRACK = "end_of_track"
 COMPLETE = "complete"
 """An analysis gave all its rows."""
+REFUSED = "refused"
+"""A control law of the user's failed: bad input that only the run brings out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +34,14 @@ class CaseOutcome:
     source: pl.DataFrame | StoredFrame | None
     """The channels, up to where the run ended, or where they lie; nothing where it never started."""
     ended: Mapping[str, Any]
-    """`kind` (`end_of_track`, `complete`, `diverged` or `error`), `t`, `s`, `message`."""
+    """`kind` (`end_of_track`, `complete`, `diverged`, `refused` or `error`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any] = field(default_factory=dict)
     wall_s: float = 0.0
     extent: Extent = NO_EXTENT
     stored: bool = False
     """Whether it was found, not run."""
+    problems: tuple[Problem, ...] = ()
+    """What is wrong with the control law of a case that was `refused`; keys start at the case."""
 
     @property
     def frame(self) -> pl.DataFrame | None:
@@ -75,9 +82,9 @@ def run_cases(
     """Runs cases on `jobs` threads, the longest first; outcomes stand in the order of the cases.
 
     Each distinct case runs once. A case that cannot run becomes an outcome with its message; Ctrl-C raises
-    `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there. `heard(hash, outcome)` is called
-    as cases end, on the calling thread; `names` are shown while they run (by default their labels), `known` says how
-    many more there are that need no run.
+    `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there, but for those of control laws of
+    the user's, which are never kept. `heard(hash, outcome)` is called as cases end, on the calling thread; `names` are
+    shown while they run (by default their labels), `known` says how many more there are that need no run.
     """
     shown = dict(zip((case.hash for case in cases), names or [case.label for case in cases], strict=True))
     distinct = list({case.hash: case for case in cases}.values())
@@ -99,9 +106,9 @@ def run_cases(
 
     def on_done(index: int, result: Any) -> None:
         wall_s = time.perf_counter() - (begun[index] or start)
-        outcome = _outcome(result, wall_s, railsim.RailsimError)
+        outcome = _outcome(result, wall_s, railsim, distinct[index].control)
         case_hash = distinct[index].hash
-        if store is not None:
+        if store is not None and distinct[index].control is None:
             outcome = store.keep(case_hash, outcome)
         outcomes[index] = outcome
         hears.done(index, outcome.wall_s, outcome.trouble)
@@ -109,9 +116,10 @@ def run_cases(
             heard(case_hash, outcome)
 
     entries = [Entry(shown[case.hash], _length(case), costs[case.hash]) for case in distinct]
-    with hears:
+    with hears, _laws(distinct) as laws:
         hears.begin(entries, threads, known)
-        railsim.run_cases([case.core_json for case in distinct], threads, on_progress, on_done, toml.tables())
+        cores = [case.core_json for case in distinct]
+        railsim.run_cases(cores, threads, on_progress, on_done, toml.tables(), laws)
     by_hash = {
         case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
         for case, outcome in zip(distinct, outcomes, strict=True)
@@ -119,9 +127,39 @@ def run_cases(
     return [by_hash[case.hash] for case in cases]
 
 
-def _outcome(result: Any, wall_s: float, error: type[Exception]) -> CaseOutcome:
-    if isinstance(result, error):
-        return CaseOutcome(None, {"kind": "error", "message": str(result)}, wall_s=wall_s)
+@contextlib.contextmanager
+def _laws(cases: Sequence[Case]) -> Iterator[dict[int, Any]]:
+    """Control laws as the core asks them, by the index of their case, each for one run.
+
+    Begun here, on the calling thread, before any other runs: an FMU's library is loaded from its own folder, and the
+    working folder is the whole process's.
+    """
+    with contextlib.ExitStack() as stack:
+        laws = {}
+        for index, case in enumerate(cases):
+            if case.control is None:
+                continue
+            running = case.control.start()
+            stack.callback(running.close)
+            laws[index] = {
+                "name": case.control.name,
+                "channels": case.control.channels,
+                "outputs": case.control.outputs,
+                "sample": running.sample,
+            }
+        yield laws
+
+
+def _outcome(result: Any, wall_s: float, railsim: ModuleType, control: Control | None) -> CaseOutcome:
+    if isinstance(result, railsim.RailsimError):
+        message = str(result)
+        if control is None or not isinstance(result, railsim.InputError):
+            return CaseOutcome(None, {"kind": "error", "message": message}, wall_s=wall_s)
+        problems = tuple(
+            problem.at(prefix=("run",)) if problem.key[:1] == ("controller",) else problem
+            for problem in toml.problems_of_core(result)
+        )
+        return CaseOutcome(None, {"kind": REFUSED, "message": message}, wall_s=wall_s, problems=problems)
     statistics = dict(result.statistics)
     ended = dict(result.ended)
     frame = pl.DataFrame(result)
