@@ -120,8 +120,9 @@ class DrawnCurve:
     name: str
     x: Sequence[float]
     y: Sequence[float]
-    role: Literal["line", "limit", "points", "outline", "reference"] = "line"
-    """An `outline` is closed by itself; a `limit` is dashed; a `reference` stands behind, grey."""
+    role: Literal["line", "limit", "points", "mark", "outline", "reference"] = "line"
+    """An `outline` is closed by itself; a `limit` is dashed; a `reference` stands behind, grey; a `mark` is a point
+    that is seen among others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import signal
+import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -108,6 +112,32 @@ def test_a_law_beside_the_spec_is_read_anew(place: Path) -> None:
     whole = effort()
     spoil(place / "slip_pi.py", "return min(max(", "return 0.5 * min(max(")
     assert effort() == pytest.approx(0.5 * whole, rel=0.05)
+
+
+def test_jobs_change_no_bit(place: Path) -> None:
+    settings = {"run.drive.until.time": 0.3}
+    alone, beside = (lmap.check(place / SPEC, set=settings, jobs=jobs).specs[0] for jobs in (1, 2))
+    for one, other in zip(alone.cases, beside.cases, strict=True):
+        assert one.frame.equals(other.frame)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_ctrl_c_stops_a_law_and_leaves_nothing(place: Path) -> None:
+    before = sorted(place.rglob("*"))
+    long = [sys.executable, "-m", "lmap", "check", SPEC, "--report", "out"]
+    long += ["--set", "run.drive.until.time=3000", "--set", "track.length=90000"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(lmap.__file__).parent.parent)}
+    with subprocess.Popen(
+        long, cwd=place, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stderr is not None
+        assert process.stdout is not None
+        assert process.stderr.readline().startswith("running 2 cases")
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        code = process.wait(timeout=30)
+        assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
+    assert sorted(place.rglob("*")) == before
 
 
 SPOILED_SPECS = {

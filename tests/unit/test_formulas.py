@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from pathlib import Path
 
 import pytest
 
@@ -96,13 +98,13 @@ def test_polachs_formula_with_table_4_of_the_paper(
     stiffness = 80.77e9 * 7.7463e-3 * 5.4550e-3 * 4.30
     for row in rows:
         slip = float(row["slip"])
-        friction = falling_friction(*falling, slip * 22.0 / 3.6)
-        found = polach_adhesion(slip, friction, *law, stiffness, 109.5e3)
+        friction = formulas.falling_friction(*falling, slip * 22.0 / 3.6)
+        found = formulas.polach_adhesion(slip, friction, *law, stiffness, 109.5e3)
         assert found == pytest.approx(float(row[f"fx_{rail}"]), rel=1e-3)
 
 
 def test_a_notch_is_level_then_of_constant_power() -> None:
-    assert notch_effort(1.0, 0.0, 450e3, 2.6e6) == 450e3
-    assert notch_effort(1.0, 26.0, 450e3, 2.6e6) == pytest.approx(100e3)
-    assert notch_effort(0.5, 5.0, 450e3, 2.6e6) == pytest.approx(130e3)
-    assert notch_effort(0.5, 2.0, 450e3, 2.6e6) == 225e3
+    assert formulas.notch_effort(1.0, 0.0, 450e3, 2.6e6) == 450e3
+    assert formulas.notch_effort(1.0, 26.0, 450e3, 2.6e6) == pytest.approx(100e3)
+    assert formulas.notch_effort(0.5, 5.0, 450e3, 2.6e6) == pytest.approx(130e3)
+    assert formulas.notch_effort(0.5, 2.0, 450e3, 2.6e6) == 225e3

@@ -30,6 +30,8 @@ STANDS = 0.5
 """m; a run that moves less is that of a parked vehicle."""
 PAPER_PEAKS = {"dry": (0.08, 0.343), "wet": (0.19, 0.263)}
 """Slip and adhesion of the peaks of the paper's Figure 5."""
+PAPER_SPEED = 22.0 / 3.6
+"""m/s, of the same."""
 WHEEL_LOAD = 109.5e3
 """N; of the paper's mean wheel force, for which the patch was worked out."""
 PATCH = 80.77e9 * 7.7463e-3 * 5.4550e-3 * 4.30
@@ -53,7 +55,9 @@ def drawings(quantities: Frames, runs: Runs, vehicle: VehicleData, published: St
 
 
 def _thinned(frame: pl.DataFrame) -> pl.DataFrame:
-    return frame.gather_every(max(1, -(-frame.height // POINTS)))
+    every = max(1, -(-frame.height // POINTS))
+    rows = [*range(0, frame.height - 1, every), frame.height - 1]
+    return frame[rows]
 
 
 def _with(frames: Frames, *names: str) -> dict[str, pl.DataFrame]:
@@ -95,7 +99,8 @@ def _effort(frames: Frames, runs: Runs, vehicle: VehicleData) -> Drawing | None:
         most = 1.1 * max(max(curve.y) for curve in curves)
         shown = [v for v in speeds[1:] if 1e-3 * data["power_at_rail"] / v <= most]
         power = [1e-3 * data["power_at_rail"] / v for v in shown]
-        curves.append(_curve("power at the rail", [3.6 * v for v in shown], power, "limit"))
+        if shown:
+            curves.append(_curve("power at the rail", [3.6 * v for v in shown], power, "limit"))
     limits = {run["drive"]["effort_limit"] for run in runs.values() if "effort_limit" in run.get("drive", {})}
     curves += [
         _curve(f"effort limit {1e-3 * limit:g} kN", [0.0, 3.6 * fastest], [1e-3 * limit] * 2, "limit")
@@ -130,48 +135,42 @@ def _between(points: Sequence[Sequence[float]], x: float) -> float:
 
 def _adhesion(frames: Frames, runs: Runs) -> Drawing | None:
     """Creep force over load of the leading wheelset over its slip, and the formula with the friction of the run."""
-    curves: list[DrawnCurve] = []
-    rails: dict[tuple[str, str], tuple[dict[str, float], float]] = {}
-    for label, one in frames.items():
-        if not _moves(one):
-            continue
-        first = wheelsets(one.columns)[0]
-        force = [f"{first}.{side}.Fx" for side in ("left", "right")]
-        load = [f"{first}.{side}.Q" for side in ("left", "right")]
-        share = [
-            (fx_l + fx_r) / (q_l + q_r) if q_l + q_r > 0.0 else 0.0
-            for fx_l, fx_r, q_l, q_r in zip(*(one[name].to_list() for name in (*force, *load)), strict=True)
-        ]
-        slip = _numbers(one, f"{first}.slip")
-        rolling = [index for index, v in enumerate(_numbers(one, "v")) if v > 1.0]
-        curves.append(
-            _curve(f"{label}, {first}", [slip[i] for i in rolling], [share[i] for i in rolling], "points")
-        )
-        speed = max(_numbers(one, "v"))
-        for rail, law in _rails(runs.get(label, {})):
-            rails.setdefault((rail, repr(law)), (law, speed))
+    curves = [_shares(label, one) for label, one in frames.items() if _moves(one)]
     if not curves:
         return None
-    farthest = min(0.4, max(0.1, 1.15 * max(max(map(abs, curve.x), default=0.0) for curve in curves)))
     sign = -1.0 if sum(sum(curve.y) for curve in curves) < 0.0 else 1.0
-    for (rail, _), (law, speed) in rails.items():
-        slips = [farthest * i / 200 for i in range(201)]
-        values = [sign * _polach(law, slip, speed) for slip in slips]
-        curves.append(
-            _curve(f"Polach, {rail}, {3.6 * speed:.0f} km/h", [sign * one for one in slips], values, "limit")
-        )
-    named = {rail for rail, _ in rails}
-    for rail, (where, peak) in PAPER_PEAKS.items():
-        if rail in named and where <= farthest and sign > 0.0:
-            curves.append(_curve(f"peak in the paper, {rail}", [where], [peak], "points"))
+    farthest = min(0.4, max(0.25, 1.15 * max(max(map(abs, curve.x), default=0.0) for curve in curves)))
+    slips = [farthest * i / 250 for i in range(251)]
+    rails = {repr(law): (name, law) for run in runs.values() for name, law in _rails(run)}
+    for name, law in rails.values():
+        values = [sign * _polach(law, slip) for slip in slips]
+        curves.append(_curve(f"Polach, {name}", [sign * slip for slip in slips], values, "limit"))
+    for name in dict.fromkeys(name for name, _ in rails.values()):
+        if name in PAPER_PEAKS and sign > 0.0:
+            where, peak = PAPER_PEAKS[name]
+            curves.append(_curve(f"peak in the paper, {name}", [where], [peak], "mark"))
     return Drawing(
         title="Adhesion over slip",
         x_label="slip of the leading wheelset",
         y_label="longitudinal creep force over wheel load",
         curves=tuple(curves),
-        caption="Dashed: Polach's formula with the run's friction at its highest speed, for Hertz's patch of the "
-        "reference wheel at 109.5 kN. Peaks of the paper's Figure 5: at 22 km/h. Points: the run, above 1 m/s.",
+        caption="Points: the run, above 1 m/s. Dashed: Polach's formula with the run's friction at 22 km/h, the "
+        "paper's speed, for Hertz's patch of the reference wheel at 109.5 kN. Friction falls with the slip "
+        "velocity: slower runs lie above it, faster ones below.",
     )
+
+
+def _shares(label: str, frame: pl.DataFrame) -> DrawnCurve:
+    """Creep force of the leading wheelset over its load, over its slip, while it rolls."""
+    first = wheelsets(frame.columns)[0]
+    channels = [f"{first}.{side}.{what}" for what in ("Fx", "Q") for side in ("left", "right")]
+    slip, share = [], []
+    for v, found, *forces in frame.select("v", f"{first}.slip", *channels).iter_rows():
+        load = forces[2] + forces[3]
+        if v > 1.0 and load > 0.0:
+            slip.append(found)
+            share.append((forces[0] + forces[1]) / load)
+    return _curve(f"{label}, {first}", slip, share, "points")
 
 
 def _rails(run: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, float]]]:
@@ -193,8 +192,8 @@ def _rails(run: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, float]]]:
         yield name, law
 
 
-def _polach(law: Mapping[str, float], slip: float, speed: float) -> float:
-    friction = falling_friction(law["friction"], law["ratio"], law["decay"], slip * speed)
+def _polach(law: Mapping[str, float], slip: float) -> float:
+    friction = falling_friction(law["friction"], law["ratio"], law["decay"], slip * PAPER_SPEED)
     return polach_adhesion(slip, friction, law["k_a"], law["k_s"], PATCH, WHEEL_LOAD)
 
 
@@ -265,9 +264,7 @@ def _stop(frames: Frames, published: Stops) -> Drawing | None:
     for label, time in published.items():
         if label in stops:
             curves.append(
-                _curve(
-                    f"printed, {label}: {time:g} s", [time], [3.6 * float(stops[label]["v"][-1])], "points"
-                )
+                _curve(f"printed, {label}: {time:g} s", [time], [3.6 * float(stops[label]["v"][-1])], "mark")
             )
     return Drawing(
         title="Speed over time",

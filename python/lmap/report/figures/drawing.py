@@ -53,6 +53,7 @@ def _line(curve: DrawnCurve, role: str) -> Line:
         x=x,
         y=y,
         role=role,
-        mode="markers" if curve.role == "points" else "lines",
+        mode="markers" if curve.role in ("points", "mark") else "lines",
+        size=12.0 if curve.role == "mark" else 6.0,
         dash="dash" if curve.role == "limit" else "solid",
     )
