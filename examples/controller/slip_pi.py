@@ -5,7 +5,7 @@ It is the law of the vehicle's own controller, so that both give the same run: a
 
 from collections.abc import Mapping
 
-BOGIES = {"bogie_front": ("ws1", "ws2", "ws3"), "bogie_rear": ("ws4", "ws5", "ws6")}
+BOGIES = {"bogie1": ("ws1", "ws2", "ws3"), "bogie2": ("ws4", "ws5", "ws6")}
 
 
 class SlipPI:

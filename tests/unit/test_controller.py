@@ -84,7 +84,7 @@ def test_a_law_that_raises_is_one_message_that_names_it() -> None:
 @pytest.mark.needs_core
 def test_a_law_sets_what_it_likes_by_name() -> None:
     def law(t: float, channels: dict[str, float]) -> dict[str, float]:
-        return {"ws1.torque": 1000.0, "bogie_rear.torque": 2000.0}
+        return {"ws1.torque": 1000.0, "bogie2.torque": 2000.0}
 
     frame = controller.simulate(short(notch=1, effort_limit=30e3), law)
     lagged = 1.0 - math.exp(-4.0)
@@ -106,6 +106,19 @@ def test_a_case_names_its_law_and_a_function_its_parameters(
     frame = controller.simulate(case)
     assert frame["ws5.torque"][-1] == pytest.approx(500.0 * (1.0 - math.exp(-4.0)), rel=1e-6)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["laws.py"]
+
+
+@pytest.mark.needs_core
+@pytest.mark.parametrize(
+    ("change", "found"), [({"drive": None}, r"without \[run.drive\]"), ({"kind": "modal"}, "of kind modal")]
+)
+def test_a_law_needs_a_driven_run_in_time(change: dict[str, Any], found: str) -> None:
+    run = {**short().data["run"], "controller": "math:cos", **change}
+    case = Case(
+        "still", {**short().data, "run": {key: value for key, value in run.items() if value is not None}}
+    )
+    with pytest.raises(InputProblem, match=f"run.controller: found .*{found}"):
+        controller.simulate(case)
 
 
 @pytest.mark.needs_core

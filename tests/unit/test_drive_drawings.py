@@ -104,7 +104,7 @@ def test_air_brake_parked_vehicle_and_motors() -> None:
     assert curve(drawn({"1 in 30": parked}, {})["Movement of the parked vehicle"], "1 in 30").y[
         -1
     ] == pytest.approx(2.0)
-    hot = moving(**{"traction.bogie_front.temperature": [0.5] * N})
+    hot = moving(**{"traction.bogie1.temperature": [0.5] * N})
     drawing = drawn({"dry": hot}, {"drive": {}})["Temperature rise of the traction motors"]
-    assert curve(drawing, "dry, bogie_front").y[0] == 0.5
+    assert curve(drawing, "dry, bogie1").y[0] == 0.5
     assert curve(drawing, "limit").y == [1.0, 1.0]

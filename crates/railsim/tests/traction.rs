@@ -106,7 +106,7 @@ fn controlled(value: &Value, channels: &[&str], outputs: &[&str]) -> railsim::Re
 fn a_control_law_is_obeyed_and_its_failure_named() {
     let mut value = locomotive(json!({ "notch": 1, "resistance": false, "until": { "time": 0.1 } }));
     // One axle, and all axles of a bogie; the rest stays with the vehicle's own controllers.
-    let outcome = controlled(&value, &["v"], &["ws1.torque", "bogie_rear.torque"]).unwrap();
+    let outcome = controlled(&value, &["v"], &["ws1.torque", "bogie2.torque"]).unwrap();
     let lagged = 100.0 * 22.0 / 3.6 * (1.0 - (-2.0_f64).exp());
     let own = column(&outcome.columns, "ws2.torque")[10];
     for w in [1, 4, 5, 6] {

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from lmap.controller import ports, python_law
 from lmap.controller.bind import law_file, with_controller
-from lmap.controller.python_law import Controller, named
+from lmap.controller.python_law import Controller
 from lmap.errors import InputProblem, SimulationProblem
 from lmap.execute.local import REFUSED, run_cases
 from lmap.simulate import as_case, check_case
@@ -31,6 +31,14 @@ if TYPE_CHECKING:
     import polars as pl
 
 __all__ = ["Controller", "law_file", "named", "simulate", "with_controller"]
+
+
+def named(name: str) -> Controller:
+    """The callable that `module:function` names, in a module that Python finds; an `InputProblem` where there is none."""
+    try:
+        return python_law.named(name)
+    except InputProblem as error:
+        raise InputProblem([one.at(prefix=("controller",)) for one in error.problems]) from None
 
 
 def simulate(

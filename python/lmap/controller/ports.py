@@ -15,7 +15,7 @@ PERIOD = "period"
 BRAKE = "independent_brake"
 """Pressure asked for in the vehicle's own cylinders, Pa."""
 TORQUE = "torque"
-"""N m, + forward: of all wheelsets, of one (`ws1.torque`), or of each of a bogie's (`bogie_front.torque`)."""
+"""N m, + forward: of all wheelsets, of one (`ws1.torque`), or of each of a bogie's (`bogie1.torque`)."""
 
 Targets = Mapping[str, tuple[str, ...]]
 """Outputs of the core by the law's name for them."""
