@@ -34,7 +34,7 @@ __all__ = ["Controller", "law_file", "named", "simulate", "with_controller"]
 
 
 def named(name: str) -> Controller:
-    """The callable that `module:function` names, in a module that Python finds; an `InputProblem` where there is none."""
+    """The callable that `module:function` names in a module that Python finds; an `InputProblem` where none is."""
     try:
         return python_law.named(name)
     except InputProblem as error:
