@@ -91,29 +91,12 @@ def _read(written: Any) -> Written:
 
 
 def _bound(case: Case, run: Mapping[str, Any], written: Written, beside: Path) -> Case:
-    if run.get("kind", "time") != "time" or not isinstance(run.get("drive"), Mapping):
-        found = (
-            f'"{written.law}" in a run without [run.drive]'
-            if run.get("kind", "time") == "time"
-            else (f'"{written.law}" in a run of kind {run["kind"]}')
-        )
-        raise InputProblem(
-            Problem(
-                found=found,
-                allowed="a control law in a driven run in time: [run.drive], an empty one at least",
-            )
-        )
-    path = _file(written, beside)
-    sums = {} if path is None else {"sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
-    if written.sha256 is not None and sums.get("sha256") != written.sha256:
-        raise InputProblem(
-            Problem(
-                key=("sha256",),
-                found=f'"{written.sha256}", not that of {written.law}',
-                allowed="the hash of the file, or no such key",
-            )
-        )
-    named = {**written.model_dump(exclude_none=True, exclude={"sha256"}), **sums}
+    kind = run.get("kind", "time")
+    if kind != "time" or not isinstance(run.get("drive"), Mapping):
+        where = "a run without [run.drive]" if kind == "time" else f"a run of kind {kind}"
+        allowed = "a control law in a driven run in time: [run.drive], an empty one at least"
+        raise InputProblem(Problem(found=f'"{written.law}" in {where}', allowed=allowed))
+    named = {**written.model_dump(exclude_none=True), **_sha256(written, beside)}
     nothing = Control(written.law, (), (), _no_start)
     bound = replace(case, data={**case.data, "run": {**run, "controller": named}}, control=nothing)
     try:
@@ -123,6 +106,23 @@ def _bound(case: Case, run: Mapping[str, Any], written: Written, beside: Path) -
     control = _fmu(written, known, beside) if written.is_fmu else _python(written, known, beside)
     control.start().close()
     return replace(bound, control=control)
+
+
+def _sha256(written: Written, beside: Path) -> dict[str, str]:
+    """Of the law's file, for the case; nothing where Python finds it as a module."""
+    path = _file(written, beside)
+    try:
+        found = None if path is None else hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        why = f'"{written.law}", whose file cannot be read ({error.strerror})'
+        raise InputProblem(Problem(key=("law",), found=why, allowed="a readable file")) from None
+    if written.sha256 not in (None, found):
+        why, allowed = (
+            f'"{written.sha256}", not that of {written.law}',
+            "the hash of the file, or no such key",
+        )
+        raise InputProblem(Problem(key=("sha256",), found=why, allowed=allowed))
+    return {} if found is None else {"sha256": found}
 
 
 def _file(written: Written, beside: Path) -> Path | None:

@@ -7,6 +7,7 @@ import hashlib
 import importlib
 import inspect
 import sys
+import sysconfig
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -91,14 +92,16 @@ def told(error: BaseException) -> str:
     text = " ".join(text.split())
     if isinstance(error, SyntaxError):  # says where itself
         return text
-    here = Path(__file__).parent
-    frames = [
+    libraries = [
+        str(Path(__file__).parent),
+        *(sysconfig.get_path(kind) for kind in ("stdlib", "purelib", "platlib")),
+    ]
+    theirs = [
         frame
         for frame in traceback.extract_tb(error.__traceback__)
-        if Path(frame.filename).parent != here and not frame.filename.startswith("<")
+        if not frame.filename.startswith(("<", *libraries))
     ]
-    ours = [frame for frame in frames if "importlib" not in frame.filename]
-    return f"{text} ({Path(ours[-1].filename).name}, line {ours[-1].lineno})" if ours else text
+    return f"{text} ({Path(theirs[-1].filename).name}, line {theirs[-1].lineno})" if theirs else text
 
 
 def _split(name: str) -> tuple[str, str]:
