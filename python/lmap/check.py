@@ -76,11 +76,13 @@ def judge_all(
     progress: Progress | None = None,
     ahead: int | None = None,
     about: int = 1,
+    tolerant: bool = False,
 ) -> list[SpecVerdict]:
     """Runs what is not in the store, all cases of all specs in one pool; each spec is judged as its last case ends.
 
     Verdicts stand in the order of the specs. With `ahead` so many cases are at hand at a time, and `prepared` is asked
-    for the next spec, of `about` that it will give, when a thread is free.
+    for the next spec, of `about` that it will give, when a thread is free. Control laws that fail are an `InputProblem`
+    in the end; with `tolerant` their cases could not be judged, and that is all.
     """
     from lmap.execute.local import Named, Queue, run_queue
 
@@ -95,8 +97,9 @@ def judge_all(
         for one in prepared:
             new = {case.hash: case for case in one.cases if case.hash not in asked}
             asked |= new.keys()
-            for case_hash in list(new):
-                found = store.outcome(case_hash)
+            for case_hash, case in list(new.items()):
+                # what a control law does hangs on code that the case does not hold
+                found = None if case.control is not None else store.outcome(case_hash)
                 if found is not None:
                     outcomes[case_hash] = found
                     del new[case_hash]
@@ -118,6 +121,14 @@ def judge_all(
 
     queue = Queue(missing(), ahead=ahead, about=about if ahead is not None else 0)
     run_queue(queue, jobs=jobs, progress=progress, store=store, known=len(outcomes), heard=ended)
+    failed = [
+        one.locate(case.label, problem)
+        for one in taken
+        for case in one.cases
+        for problem in outcomes[case.hash].problems
+    ]
+    if failed and not tolerant:
+        raise InputProblem(failed)
     for position in range(len(taken)):
         if position not in verdicts:
             settle(position)

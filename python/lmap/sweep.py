@@ -134,7 +134,13 @@ def sweep(
     for begin in range(0, len(variants), AT_ONCE):
         part, valid = range(begin, min(begin + AT_ONCE, len(variants))), list[int]()
         verdicts = judge_all(
-            prepared(part, valid), store, jobs=jobs, progress=progress, ahead=AHEAD, about=len(part)
+            prepared(part, valid),
+            store,
+            jobs=jobs,
+            progress=progress,
+            ahead=AHEAD,
+            about=len(part),
+            tolerant=True,
         )
         for number, found in zip(valid, verdicts, strict=True):
             rows[number] = list(_rows(number, variants[number], found))

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
 import heapq
 import itertools
 import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import polars as pl
 
 from lmap import toml
+from lmap.errors import Problem
 from lmap.execute.cost import estimate
 from lmap.execute.progress import Entry, Progress
 from lmap.execute.store import Store, StoredFrame
-from lmap.spec.case import Case
+from lmap.spec.case import Case, Control
 from lmap.verdict import NO_EXTENT, Extent
 
 END_OF_TRACK = "end_of_track"
 COMPLETE = "complete"
 """An analysis gave all its rows."""
+REFUSED = "refused"
+"""A control law of the user's failed: bad input that only the run brings out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +36,14 @@ class CaseOutcome:
     source: pl.DataFrame | StoredFrame | None
     """The channels, up to where the run ended, or where they lie; nothing where it never started."""
     ended: Mapping[str, Any]
-    """`kind` (`end_of_track`, `complete`, `diverged` or `error`), `t`, `s`, `message`."""
+    """`kind` (`end_of_track`, `complete`, `diverged`, `refused` or `error`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any] = field(default_factory=dict)
     wall_s: float = 0.0
     extent: Extent = NO_EXTENT
     stored: bool = False
     """Whether it was found, not run."""
+    problems: tuple[Problem, ...] = ()
+    """What is wrong with the control law of a case that was `refused`; keys start at the case."""
 
     @property
     def frame(self) -> pl.DataFrame | None:
@@ -74,7 +81,8 @@ def run_cases(
     """Runs cases on `jobs` threads, the longest first; outcomes stand in the order of the cases.
 
     Each distinct case runs once. A case that cannot run becomes an outcome with its message; Ctrl-C raises
-    `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there.
+    `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there, but for those of control laws of
+    the user's, which are never kept.
     """
     distinct = {case.hash: case for case in cases}
     outcomes: dict[str, CaseOutcome] = {}
@@ -105,8 +113,9 @@ class Queue:
         self._taken = itertools.count()
         self.entries: list[Entry] = []
         """Of the cases that have been handed out, in that order, and without `ahead` of all."""
-        self.hashes: list[str] = []
-        """Of the cases that have been handed out."""
+        self.handed: list[Case] = []
+        """What has been handed out."""
+        self._laws = contextlib.ExitStack()
         self._fill()
         if ahead is None:
             self.entries = [_entry(named, -cost) for cost, _, named in sorted(self._heap)]
@@ -114,17 +123,35 @@ class Queue:
     @property
     def about(self) -> int:
         """How many cases there will be."""
-        return max(self._about, len(self.hashes) + len(self._heap))
+        return max(self._about, len(self.handed) + len(self._heap))
 
-    def __iter__(self) -> Iterator[str]:
-        """Each case as the core reads it."""
+    def __enter__(self) -> None:
+        self._laws.__enter__()
+
+    def __exit__(self, *error: object) -> None:
+        """Ends the control laws that were begun."""
+        self._laws.close()
+
+    def __iter__(self) -> Iterator[str | tuple[str, dict[str, Any]]]:
+        """Each case as the core reads it, with its control law where it has one, begun for this run."""
         while self._heap:
             cost, _, named = heapq.heappop(self._heap)
-            self.hashes.append(named.case.hash)
+            self.handed.append(named.case)
             if self._ahead is not None:
                 self.entries.append(_entry(named, -cost))
-            yield named.case.core_json
+            control = named.case.control
+            yield named.case.core_json if control is None else (named.case.core_json, self._begin(control))
             self._fill()
+
+    def _begin(self, control: Control) -> dict[str, Any]:
+        running = control.start()
+        self._laws.callback(running.close)
+        return {
+            "name": control.name,
+            "channels": control.channels,
+            "outputs": control.outputs,
+            "sample": running.sample,
+        }
 
     def _fill(self) -> None:
         while self._ahead is None or len(self._heap) < self._ahead:
@@ -166,21 +193,28 @@ def run_queue(
 
     def on_done(index: int, result: Any) -> None:
         wall_s = time.perf_counter() - begun.pop(index, start)
-        outcome = _outcome(result, wall_s, railsim.RailsimError)
-        case_hash = queue.hashes[index]
-        if store is not None:
-            outcome = store.keep(case_hash, outcome)
+        case = queue.handed[index]
+        outcome = _outcome(result, wall_s, railsim, case.control)
+        if store is not None and case.control is None:
+            outcome = store.keep(case.hash, outcome)
         hears.done(index, outcome.wall_s, outcome.trouble)
-        heard(case_hash, outcome)
+        heard(case.hash, outcome)
 
-    with hears:
+    with hears, queue:
         hears.begin(queue.entries, threads, known, queue.about)
         railsim.run_cases(queue, threads, on_progress, on_done, toml.tables())
 
 
-def _outcome(result: Any, wall_s: float, error: type[Exception]) -> CaseOutcome:
-    if isinstance(result, error):
-        return CaseOutcome(None, {"kind": "error", "message": str(result)}, wall_s=wall_s)
+def _outcome(result: Any, wall_s: float, railsim: ModuleType, control: Control | None) -> CaseOutcome:
+    if isinstance(result, railsim.RailsimError):
+        message = str(result)
+        if control is None or not isinstance(result, railsim.InputError):
+            return CaseOutcome(None, {"kind": "error", "message": message}, wall_s=wall_s)
+        problems = tuple(
+            problem.at(prefix=("run",)) if problem.key[:1] == ("controller",) else problem
+            for problem in toml.problems_of_core(result)
+        )
+        return CaseOutcome(None, {"kind": REFUSED, "message": message}, wall_s=wall_s, problems=problems)
     statistics = dict(result.statistics)
     ended = dict(result.ended)
     frame = pl.DataFrame(result)
