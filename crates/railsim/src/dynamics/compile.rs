@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Mount};
 use crate::contact::friction::FrictionField;
-use crate::contact::geometry_table::{GeometryTable, Pair, Placement};
+use crate::contact::geometry_table::{GeometryTable, PENETRATION, Pair, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
@@ -243,11 +243,26 @@ pub fn geometry_table(case: &Case) -> Result<Arc<GeometryTable>> {
     let placement = placement(case)?;
     let wheel = points(case, &case.run.wheel_profile)?.to_vec();
     let rail = points(case, &case.track.rail_profile)?.to_vec();
-    let pair = Pair { wheel, rail, placement };
+    let penetration = penetration(case, &placement);
+    let pair = Pair { wheel, rail, placement, penetration };
     case.tables.get(pair, || {
         let (wheel, rail, placement) = contact_pair(case)?;
-        GeometryTable::build(&wheel, &rail, &placement)
+        GeometryTable::build_at(&wheel, &rail, &placement, penetration)
     })
+}
+
+/// Interpenetration over which the tables of a case average, m: that of its `vehicle.contact.averaging_load`, else of the static wheel load. To a
+/// micrometre, so that vehicles of almost the same weight share their tables. A vehicle without weight takes [`PENETRATION`].
+fn penetration(case: &Case, placement: &Placement) -> f64 {
+    let load = case.vehicle.contact.averaging_load.unwrap_or_else(|| wheel_load(case));
+    if load > 0.0 { 1e-6 * (1e6 * placement.penetration_under(load)).round() } else { PENETRATION }
+}
+
+/// Static wheel load, the mean of all wheels, N. Bodies that are led along the track stand on none.
+fn wheel_load(case: &Case) -> f64 {
+    let vehicle = &case.vehicle;
+    let guided: f64 = vehicle.bodies.iter().filter(|body| body.guided).map(|body| body.mass).sum();
+    (vehicle.mass() - guided) * case.run.gravity / (2.0 * vehicle.wheelsets.len().max(1) as f64)
 }
 
 /// The same pair for direct search ([`Side`]).
@@ -318,8 +333,7 @@ fn contact(case: &Case) -> Result<Contact> {
         return Ok(Contact::Textbook(*book));
     }
     let settings = &case.vehicle.contact;
-    let mass = case.vehicle.mass();
-    let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
+    let wheel_load = wheel_load(case);
     Ok(Contact::Profiles {
         table: geometry_table(case)?,
         law: case.run.creep.with_poisson(settings.poisson),

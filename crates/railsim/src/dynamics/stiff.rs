@@ -3,8 +3,9 @@
 //! contact planes stand still, creep is the secant slope, the suspension above is left out.
 
 use crate::contact::creepage::PlacedContact;
+use crate::dynamics::axle::patch;
 use crate::dynamics::model::{Contact, Model};
-use crate::dynamics::rhs::{LEAST_ROLLING_SPEED, patch};
+use crate::dynamics::rhs::LEAST_ROLLING_SPEED;
 use crate::dynamics::scratch::{ContactForce, Scratch, Wheel};
 use crate::dynamics::state::PAIR;
 use crate::equipment::stick::CONTACT_DAMPING;
