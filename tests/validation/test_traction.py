@@ -205,6 +205,9 @@ def test_sand_comes_and_goes_after_its_delay(compare: Compare) -> None:
         "until": {"time": 12.0},
     }
     frame = run("wet", drive)
+    sanded = frame.filter(frame["traction.sanding"] > 1.0)["t"]
+    compare("sand comes, s", float(sanded[0]), 9.0, 0.02, "demand and delay")
+    compare("sand goes, s", float(sanded[-1]), 11.0, 0.03, "demand and delay")
     wet, dry_sand, last = (mean(frame, "ws1.slip", *w) for w in ((8.5, 8.98), (9.2, 10.98), (11.5, 12.0)))
     # The same effort with more friction: less slip, and back again.
     compare("slip before sand, over slip after it", wet / last, 1.0, 0.01, "the same rail")
