@@ -4,7 +4,7 @@ Everything that runs for long releases the GIL. Documents, cases and overrides c
 was written. SI units; profiles alone are in millimetres, as their files are.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, TypedDict, final
 
 from typing_extensions import Buffer, CapsuleType
@@ -38,7 +38,6 @@ __all__ = [
     "read_profile",
     "rolling_radius_difference",
     "run_cases",
-    "run_controlled",
     "smooth_profile",
     "toml_line",
     "toml_to_json",
@@ -63,6 +62,12 @@ class _Ended(TypedDict):
     t: float | None  # s; of the last row, or of the divergence
     s: float | None  # m
     message: str | None
+
+class _Law(TypedDict):
+    name: str
+    channels: Sequence[str]
+    outputs: Sequence[str]
+    sample: Callable[[float, float, list[float]], Sequence[float | None]]
 
 class RailsimError(Exception):
     """Base of everything the core raises."""
@@ -335,7 +340,7 @@ def contact_map(
     """
 
 def run_cases(
-    cases: Sequence[str],
+    cases: Iterable[str | tuple[str, _Law]],
     jobs: int,
     on_progress: Callable[[int, float, float, float], object],
     on_done: Callable[[int, Frame | RailsimError], object],
@@ -343,27 +348,19 @@ def run_cases(
 ) -> None:
     """Run cases on `jobs` threads, begun in their order; returns when the last one has ended.
 
+    `cases` is asked for the next case when a thread is free, on that thread; an exception in it stops every run as one
+    from a callback does. A case is JSON, or a pair of JSON and a control law: `sample(t, period, seen)` is called on
+    the thread of that case every `run.drive.period`, with the time, the period (s) and the values of `channels`; it
+    gives a value for each of `outputs` (`<wheelset>.torque` and `<bogie>.torque`, N m; `independent_brake`, Pa), `None`
+    for what stays with the vehicle's own controllers. An exception in it, or an answer that is no finite number, is the
+    case's failure and names `name`.
+
     Both callbacks are called on the calling thread: `on_progress(index, fraction, distance_m,
     real_time_factor)` about ten times a second for each case that is on its way, `on_done(index, result)`
     once for each case, as they finish. A case that fails has its exception for a result and stops no other.
 
     An exception from a callback stops every run, within a step, and is raised again; so does Ctrl-C, as
     `KeyboardInterrupt`, within a second.
-    """
-
-def run_controlled(
-    case_json: str,
-    name: str,
-    channels: Sequence[str],
-    controller: Callable[[float, dict[str, float]], Mapping[str, float | Sequence[float]] | None],
-    on_progress: Callable[[int, float, float, float], object],
-    on_done: Callable[[int, Frame | RailsimError], object],
-) -> None:
-    """`run_cases` of one case with a control law at every sample of `run.drive.period`.
-
-    `controller(t, seen)` is called on another thread with the time (s) and the `channels` by name; it gives
-    `torque` (N m, a number for each wheelset) and `independent_brake` (Pa), either or none. `name` is what
-    messages call it. An exception in it, or an answer that is no finite number, is the case's failure.
     """
 
 def _run_probes(

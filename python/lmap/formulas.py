@@ -96,3 +96,31 @@ def prudhomme_limit(axle_load: float, factor: float = 1.0) -> float:
     K is 1.0 for locomotives and passenger vehicles, 0.85 for wagons (UIC 518, EN 14363).
     """
     return factor * (10e3 + axle_load / 3.0)
+
+
+def notch_effort(share: float, speed: float, max_effort: float, power: float) -> float:
+    """Tractive effort (N) of a notch that is a share of the last one, at a speed (m/s).
+
+    Share of the starting effort (N), up to the square of the share of the power at the rail (W).
+    """
+    force, limit = share * max_effort, share * share * power
+    return limit / speed if force * speed > limit else force
+
+
+def polach_adhesion(
+    slip: float, friction: float, k_a: float, k_s: float, stiffness: float, load: float
+) -> float:
+    """Longitudinal creep force over wheel load by Polach (Wear 258 (2005) 992, eqs. 2-4) in pure longitudinal slip.
+
+    `friction` at this slip velocity, reduction factors, `stiffness` G a b C11 of the patch (N), wheel load (N).
+    """
+    if friction <= 0.0:
+        return 0.0
+    eps = math.pi * stiffness * slip / (4.0 * load * friction)
+    sliding = k_a * eps / (1.0 + (k_a * eps) ** 2) + math.atan(k_s * eps)
+    return 2.0 * friction / math.pi * sliding
+
+
+def falling_friction(friction: float, ratio: float, decay: float, velocity: float) -> float:
+    """Coefficient of friction at a slip velocity (m/s), from that at none: mu0 ((1 - A) exp(-B w) + A)."""
+    return friction * ((1.0 - ratio) * math.exp(-decay * velocity) + ratio)

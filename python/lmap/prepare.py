@@ -11,7 +11,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lmap import contact, files, procedures, toml
+from lmap import contact, controller, files, procedures, toml
 from lmap.analyse import first_place, vehicle_case
 from lmap.criteria.chain import signal_problems
 from lmap.errors import InputProblem, KeyPath, Problem, SimulationProblem, listed, nearest_hint
@@ -57,6 +57,10 @@ class Prepared:
     key: str | None = None
     """Hash of everything that judging hangs on beside the core; none where nothing is simulated."""
 
+    def locate(self, label: str, problem: Problem) -> Problem:
+        """A problem of the case of this label, keys from the case on, with file and line where the spec writes it."""
+        return self.loaded.locate(_as_written(self.procedure, self.spec, label, problem))
+
 
 @dataclass(frozen=True, slots=True)
 class _Sources:
@@ -84,6 +88,13 @@ class _Sources:
         if part == "profiles" and rest and rest[0] in self.profiles:
             return problem.at(file=files.shown(self.profiles[str(rest[0])][0]))
         return self.loaded.locate(problem)
+
+
+def _as_written(procedure: Procedure, spec: Spec, label: str, problem: Problem) -> Problem:
+    """A fault of a case under the key that the spec writes."""
+    if isinstance(procedure, Rewriting):
+        return replace(problem, key=procedure.origin(spec, label, problem.key))
+    return problem
 
 
 def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store | None = None) -> Prepared:
@@ -119,6 +130,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
     except InputProblem as error:
         raise InputProblem([loaded.locate(problem) for problem in error.problems]) from None
     sources = _Sources(loaded, vehicle, base, profiles)
+    cases = _with_laws(cases, loaded, spec, procedure)
     key = _key(spec, cases)
     noted = None if store is None else _noted(store, key)
     if noted is None:
@@ -136,8 +148,13 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
         procedure=procedure,
         cases=tuple(cases),
         channels=known,
-        facts=facts,
-        inputs=(*_inputs(sources), *_outline_input(outline), *_records(cases, loaded.document.path)),
+        facts=(*facts, *_law_facts(cases)),
+        inputs=(
+            *_inputs(sources),
+            *_outline_input(outline),
+            *_records(cases, loaded.document.path),
+            *_law_inputs(cases, _beside_law(loaded)),
+        ),
         key=key,
     )
 
@@ -324,9 +341,7 @@ def _checked(
 
     def told(case: Case, problem: Problem) -> Problem:
         """A fault of a case where the spec writes it, or the file that does."""
-        if isinstance(procedure, Rewriting):
-            problem = replace(problem, key=procedure.origin(spec, case.label, problem.key))
-        return sources.locate(problem)
+        return sources.locate(_as_written(procedure, spec, case.label, problem))
 
     known: dict[str, Channel] = {}
     problems: list[Problem] = []
@@ -417,6 +432,48 @@ def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
     ]
 
 
+def _beside_law(loaded: LoadedSpec) -> Path:
+    """The folder that control laws are seen from: that of the file that names them, or the caller's."""
+    if loaded.given & {"run.controller", "run.controller.law"}:
+        return Path.cwd()
+    return loaded.written_in("run.controller").parent
+
+
+def _with_laws(cases: Sequence[Case], loaded: LoadedSpec, spec: Spec, procedure: Procedure) -> list[Case]:
+    """The cases with the control laws that they name."""
+    found: list[Case] = []
+    problems: list[Problem] = []
+    for case in cases:
+        try:
+            found.append(controller.with_controller(case, _beside_law(loaded)))
+        except InputProblem as error:
+            told = (_as_written(procedure, spec, case.label, problem) for problem in error.problems)
+            problems += [loaded.locate(problem) for problem in told]
+    if problems:
+        raise InputProblem(problems)
+    return found
+
+
+def _law_facts(cases: Sequence[Case]) -> list[Fact]:
+    value = "{}: run anew by every check, in this process; its result is never kept"
+    return [
+        Fact(name="control law", value=value.format(case.control.name), case=case.label)
+        for case in cases
+        if case.control is not None
+    ]
+
+
+def _law_inputs(cases: Sequence[Case], beside: Path) -> list[InputFile]:
+    """The files of all control laws."""
+    found = {}
+    for case in cases:
+        path = controller.law_file(case, beside)
+        if path is not None:
+            sha256 = case.data["run"]["controller"]["sha256"]
+            found[path] = InputFile(role="control law", path=files.shown(path), sha256=sha256)
+    return list(found.values())
+
+
 def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
     if outline is None:
         return ()
@@ -440,7 +497,7 @@ def load_case(path: Path) -> Case:
             case = case_of(document.data, path.stem)
         else:
             case = case_of(toml.json_loads(files.read_text(path, "case"), "a case"), path.stem)
-        case = with_records(case, path)
+        case = controller.with_controller(with_records(case, path), path.parent)
         check_case(case)
     except InputProblem as error:
         raise InputProblem(

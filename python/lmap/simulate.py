@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -45,7 +46,7 @@ def as_case(case: Case | Mapping[str, Any] | str) -> Case:
     Files of measured tracks that nobody has read yet are seen from the working folder.
     """
     if isinstance(case, Case):
-        known = Case(case.label, toml.plain(case.data, "a case"), case.texts)
+        known = replace(case, data=toml.plain(case.data, "a case"))
         return known if known.texts else with_records(known, Path.cwd())
     data = toml.json_loads(case, "a case") if isinstance(case, str) else case
     return with_records(case_of(data, "case"), Path.cwd())

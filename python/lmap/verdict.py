@@ -120,13 +120,14 @@ class DrawnCurve:
     name: str
     x: Sequence[float]
     y: Sequence[float]
-    role: Literal["line", "limit", "points", "outline"] = "line"
-    """An `outline` is closed by itself; a `limit` is dashed."""
+    role: Literal["line", "limit", "points", "mark", "outline", "reference"] = "line"
+    """An `outline` is closed by itself; a `limit` is dashed; a `reference` stands behind, grey; a `mark` is a point
+    that is seen among others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drawing:
-    """A plot of one quantity against another that is no time: a loop, an outline, a figure over speed."""
+    """A plot of one quantity against another: a loop, an outline, a figure over speed, cases over time."""
 
     title: str
     x_label: str
@@ -145,7 +146,7 @@ class InputFile:
     """A file that went into a check."""
 
     role: str
-    """spec, vehicle, track, outline, profile or measured track."""
+    """spec, vehicle, track, outline, profile, measured track or control law."""
     path: str
     sha256: str
 
@@ -224,7 +225,7 @@ class CaseResult:
     frames: Frames
     """Where its frames are: in memory, or on disk until somebody asks."""
     ended: Mapping[str, Any]
-    """How the run ended: `kind` (`end_of_track`, `complete` or `diverged`), `t`, `s`, `message`."""
+    """How the run ended: `kind` (`end_of_track`, `complete`, `diverged` or `refused`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any]
     units: Mapping[str, str]
     """Unit by column of `quantities`."""

@@ -221,3 +221,59 @@ def test_faults_of_stage_1(
     wanted = [line for line in found if line.startswith(f"lmap: {spec}:") and f": {key}" in line]
     assert wanted, found
     assert all(part in wanted[0] for part in parts), found
+
+
+TRACTION = {
+    "a curve that goes back": (
+        "notches = 8",
+        "notches = 1\nnotch_curves = [[[5.0, 4.5e5], [3.0, 2.0e5]]]",
+        "traction.notch_curves[0][1][0]: found 3 m/s",
+    ),
+    "a curve of one point": (
+        "notches = 8",
+        "notches = 1\nnotch_curves = [[]]",
+        "traction.notch_curves[0]",
+    ),
+    "a point of one number": (
+        "notches = 8",
+        "notches = 1\nnotch_curves = [[[0.0], [3.0, 2.0e5]]]",
+        "traction.notch_curves[0][0]",
+    ),
+    "a negative effort": (
+        "notches = 8",
+        "notches = 1\nnotch_curves = [[[0.0, 4.5e5], [3.0, -2.0e5]]]",
+        "traction.notch_curves[0][1][1]: found -200000 N",
+    ),
+    "no list": ("notches = 8", 'notches = 8\nnotch_curves = "steep"', "traction.notch_curves"),
+    "too few curves": (
+        "notches = 8",
+        "notches = 8\nnotch_curves = [[[0.0, 4.5e5], [3.0, 2.0e5]]]",
+        "traction.notch_curves: found 1 curves",
+    ),
+    "a negative power": ("power_at_rail = 2.6e6", "power_at_rail = -2.6e6", "power_at_rail"),
+    "a negative starting effort": ("max_effort = 450.0e3", "max_effort = -450.0e3", "max_effort"),
+    "a negative continuous rating": (
+        "notches = 8",
+        "notches = 8\nthermal = { continuous_effort = -3e5, short_time_effort = 4e5, short_time = 600.0 }",
+        "traction.thermal.continuous_effort: found -300000",
+    ),
+    "a short-time rating below the continuous one": (
+        "notches = 8",
+        "notches = 8\nthermal = { continuous_effort = 3e5, short_time_effort = 2e5, short_time = 600.0 }",
+        "traction.thermal.short_time_effort: found 200000 N",
+    ),
+    "a negative short time": (
+        "notches = 8",
+        "notches = 8\nthermal = { continuous_effort = 3e5, short_time_effort = 4e5, short_time = -600.0 }",
+        "traction.thermal.short_time: found -600",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", TRACTION)
+def test_traction_data_that_are_none_are_one_message(what: str, messages: Callable[..., list[str]]) -> None:
+    old, new, expected = TRACTION[what]
+    spoil(VEHICLE, old, new)
+    [message] = messages("specs/effort_speed.toml")
+    assert message.startswith(f"lmap: {VEHICLE}:"), message
+    assert expected in message

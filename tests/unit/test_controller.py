@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -56,7 +57,9 @@ def test_a_law_sees_its_channels_and_its_torque_arrives() -> None:
     [
         ({"torque": [math.nan] * 6}, "NaN"),
         ({"torque": [0.0] * 5}, "5 torques for 6 wheelsets"),
-        ({"independent_brake": -1.0}, "independent_brake of -1"),
+        ({"independent_brake": -1.0}, "independent_brake = -1 Pa"),
+        ({"ws9.torque": 1.0}, "`ws9.torque`"),
+        ([0.0] * 6, "an answer of type list"),
         ({"notch": 8}, "`notch`"),
         ({"torque": "full"}, "neither a number nor numbers"),
     ],
@@ -76,6 +79,46 @@ def test_a_law_that_raises_is_one_message_that_names_it() -> None:
 
     with pytest.raises(InputProblem, match=r"my_law.*no torque today"):
         controller.simulate(short(), my_law, channels=[])
+
+
+@pytest.mark.needs_core
+def test_a_law_sets_what_it_likes_by_name() -> None:
+    def law(t: float, channels: dict[str, float]) -> dict[str, float]:
+        return {"ws1.torque": 1000.0, "bogie2.torque": 2000.0}
+
+    frame = controller.simulate(short(notch=8, effort_limit=30e3), law)
+    lagged = 1.0 - math.exp(-4.0)
+    for w, torque in ((1, 1000.0), (4, 2000.0), (5, 2000.0), (6, 2000.0)):
+        assert frame[f"ws{w}.torque"][-1] == pytest.approx(torque * lagged, rel=1e-6)
+    # The rest stays with the vehicle's own controllers: 5 kN at a rim of 0.5335 m.
+    assert frame["ws2.torque"][-1] == pytest.approx(5e3 * 0.5335 * lagged, rel=1e-3)
+
+
+@pytest.mark.needs_core
+def test_a_case_names_its_law_and_a_function_its_parameters(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = "def all_alike(t, seen, torque):\n    return {'torque': torque * (1.0 if 'v' in seen else 0.0)}\n"
+    (tmp_path / "laws.py").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    case = short()
+    case.data["run"]["controller"] = {"law": "laws:all_alike", "parameters": {"torque": 500.0}}
+    frame = controller.simulate(case)
+    assert frame["ws5.torque"][-1] == pytest.approx(500.0 * (1.0 - math.exp(-4.0)), rel=1e-6)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["laws.py"]
+
+
+@pytest.mark.needs_core
+@pytest.mark.parametrize(
+    ("change", "found"), [({"drive": None}, r"without \[run.drive\]"), ({"kind": "modal"}, "of kind modal")]
+)
+def test_a_law_needs_a_driven_run_in_time(change: dict[str, Any], found: str) -> None:
+    run = {**short().data["run"], "controller": "math:cos", **change}
+    case = Case(
+        "still", {**short().data, "run": {key: value for key, value in run.items() if value is not None}}
+    )
+    with pytest.raises(InputProblem, match=f"run.controller: found .*{found}"):
+        controller.simulate(case)
 
 
 @pytest.mark.needs_core

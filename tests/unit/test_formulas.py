@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from pathlib import Path
 
 import pytest
 
@@ -79,3 +81,30 @@ def test_two_chords_of_equal_vehicles_make_twice_the_coupler_angle() -> None:
 
 def test_rollover_of_a_rigid_vehicle() -> None:
     assert formulas.rollover_unloading(0.72, 1.5, 9.81) == pytest.approx(0.147, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("rail", "law", "falling"),
+    [("dry", (0.60, 0.15), (0.47, 0.44, 0.7)), ("wet", (0.29, 0.09), (0.30, 0.38, 0.1))],
+)
+def test_polachs_formula_with_table_4_of_the_paper(
+    rail: str, law: tuple[float, float], falling: tuple[float, float, float]
+) -> None:
+    """The points of `polach_table4_22kmh.csv`, whose head has its patch, within 0.1 %."""
+    table = Path(__file__).parents[2] / "crates/railsim/tests/data/polach_table4_22kmh.csv"
+    with table.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert len(rows) > 10
+    stiffness = 80.77e9 * 7.7463e-3 * 5.4550e-3 * 4.30
+    for row in rows:
+        slip = float(row["slip"])
+        friction = formulas.falling_friction(*falling, slip * 22.0 / 3.6)
+        found = formulas.polach_adhesion(slip, friction, *law, stiffness, 109.5e3)
+        assert found == pytest.approx(float(row[f"fx_{rail}"]), rel=1e-3)
+
+
+def test_a_notch_is_level_then_of_constant_power() -> None:
+    assert formulas.notch_effort(1.0, 0.0, 450e3, 2.6e6) == 450e3
+    assert formulas.notch_effort(1.0, 26.0, 450e3, 2.6e6) == pytest.approx(100e3)
+    assert formulas.notch_effort(0.5, 5.0, 450e3, 2.6e6) == pytest.approx(130e3)
+    assert formulas.notch_effort(0.5, 2.0, 450e3, 2.6e6) == 225e3

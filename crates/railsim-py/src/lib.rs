@@ -41,7 +41,7 @@ mod module {
     #[pymodule_export]
     use crate::profile::{inspect_profile, profile_quality, read_profile, smooth_profile, write_profile};
     #[pymodule_export]
-    use crate::run::{channels, check_case, fingerprint, run_cases, run_controlled, track_extremes, version};
+    use crate::run::{channels, check_case, fingerprint, run_cases, track_extremes, version};
     #[pymodule_export]
     use crate::toml::{toml_line, toml_to_json};
     #[pymodule_export]

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::pybacked::PyBackedStr;
+use pyo3::types::PyIterator;
 use railsim::KeyPath;
 use railsim::analysis;
-use railsim::run::{Action, Law, Outcome, Outside, simulate_controlled};
+use railsim::run::{Law, Outcome, Outside, simulate_controlled};
 use railsim::schema::Case;
 use railsim::track::irregularity::DeviationField;
 
@@ -68,12 +68,13 @@ pub fn track_extremes(
     Ok(["lateral", "vertical", "cross_level", "gauge"].into_iter().zip(extremes).collect())
 }
 
-/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks.
+/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks. `cases` may be any iterable of
+/// JSON, or of pairs of JSON and a control law of the user's: it is asked for the next one when a thread is free, on that thread.
 #[pyfunction]
 #[pyo3(signature = (cases, jobs, on_progress, on_done, tables=None))]
 pub fn run_cases(
     py: Python<'_>,
-    cases: Vec<String>,
+    cases: &Bound<'_, PyAny>,
     jobs: NonZeroUsize,
     on_progress: Py<PyAny>,
     on_done: Py<PyAny>,
@@ -83,75 +84,71 @@ pub fn run_cases(
     let tables = tables.map(|t| t.tables.clone()).unwrap_or_default();
     enter(
         py,
-        cases.len(),
+        Texts(cases.try_iter()?.unbind()),
         jobs,
-        |index, control| {
-            let mut case = Case::from_json(&cases[index])?;
+        |(text, law): (PyBackedStr, Option<PythonLaw>), control| {
+            let mut case = Case::from_json(&text)?;
             case.tables = tables.clone();
-            analysis::run(&case, control)
+            let Some(law) = law else { return analysis::run(&case, control) };
+            let mut asked =
+                Asked { sample: &law.sample, period: case.run.drive.as_ref().map_or(0.0, |d| d.period) };
+            let (channels, outputs) = (law.channels.clone(), law.outputs.clone());
+            let mut outside = Outside { name: law.name.clone(), channels, outputs, law: &mut asked };
+            simulate_controlled(&case, control, &mut outside)
         },
         &mut Callbacks { on_progress, on_done },
     )
 }
 
-/// Runs one case with a Python function as control law: `controller(t, seen)` with `seen` a dict of the channels, gives a dict with
-/// `torque` (N m, a number for each wheelset) and `independent_brake` (Pa), or nothing.
-#[pyfunction]
-pub fn run_controlled(
-    py: Python<'_>,
-    case_json: String,
+/// A Python function as control law, with its name and the names of what it sees and sets.
+#[derive(FromPyObject)]
+pub struct PythonLaw {
+    #[pyo3(item)]
     name: String,
+    #[pyo3(item)]
     channels: Vec<String>,
-    controller: Py<PyAny>,
-    on_progress: Py<PyAny>,
-    on_done: Py<PyAny>,
-) -> PyResult<()> {
-    let controller = &controller;
-    enter(
-        py,
-        1,
-        NonZeroUsize::MIN,
-        |_, control| {
-            let mut law = PythonLaw { controller, channels: &channels };
-            let mut outside = Outside { name: name.clone(), channels: channels.clone(), law: &mut law };
-            simulate_controlled(&Case::from_json(&case_json)?, control, &mut outside)
-        },
-        &mut Callbacks { on_progress, on_done },
-    )
+    #[pyo3(item)]
+    outputs: Vec<String>,
+    #[pyo3(item)]
+    sample: Py<PyAny>,
 }
 
-/// A Python function as control law.
-struct PythonLaw<'a> {
-    controller: &'a Py<PyAny>,
-    channels: &'a [String],
-}
+/// What a Python iterator gives: a case, or a case with its control law.
+struct Texts(Py<PyIterator>);
 
-impl Law for PythonLaw<'_> {
-    fn sample(&mut self, t: f64, seen: &[f64]) -> Result<Action, String> {
+impl Iterator for Texts {
+    type Item = PyResult<(PyBackedStr, Option<PythonLaw>)>;
+
+    fn next(&mut self) -> Option<Self::Item> {
         Python::attach(|py| {
-            let dict = PyDict::new(py);
-            for (name, value) in self.channels.iter().zip(seen) {
-                dict.set_item(name, value)?;
-            }
-            let answer = self.controller.bind(py).call1((t, dict))?;
-            if answer.is_none() {
-                return Ok(Action::default());
-            }
-            let answer = answer.cast_into::<PyDict>()?;
-            let mut action = Action::default();
-            for (key, value) in answer.iter() {
-                match key.extract::<String>()?.as_str() {
-                    "torque" => action.torque = Some(value.extract()?),
-                    "independent_brake" => action.independent_brake = Some(value.extract()?),
-                    other => {
-                        let message = format!("an answer with `{other}`; allowed: torque, independent_brake");
-                        return Err(PyValueError::new_err(message));
-                    }
+            self.0.bind(py).clone().next().map(|item| {
+                let item = item?;
+                match item.extract() {
+                    Ok((text, law)) => Ok((text, Some(law))),
+                    Err(_) => Ok((item.extract()?, None)),
                 }
-            }
-            Ok(action)
+            })
         })
-        .map_err(|error: PyErr| error.to_string())
+    }
+}
+
+/// Takes the GIL for as long as the function answers.
+struct Asked<'a> {
+    sample: &'a Py<PyAny>,
+    /// s
+    period: f64,
+}
+
+impl Law for Asked<'_> {
+    fn sample(&mut self, t: f64, seen: &[f64], set: &mut [Option<f64>]) -> Result<(), String> {
+        let answer: PyResult<Vec<Option<f64>>> =
+            Python::attach(|py| self.sample.bind(py).call1((t, self.period, seen.to_vec()))?.extract());
+        let answer = answer.map_err(|error| Python::attach(|py| error.value(py).to_string()))?;
+        if answer.len() != set.len() {
+            return Err(format!("{} numbers for {} outputs", answer.len(), set.len()));
+        }
+        set.copy_from_slice(&answer);
+        Ok(())
     }
 }
 

@@ -10,7 +10,7 @@ use common::{case, coco134, column};
 use railsim::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
 use railsim::equipment::Acting;
 use railsim::integrator::System;
-use railsim::run::{Action, Ended, Free, Law, Outcome, Outside, simulate, simulate_controlled};
+use railsim::run::{Ended, Free, Law, Outcome, Outside, simulate, simulate_controlled};
 use railsim::schema::Case;
 use serde_json::{Value, json};
 
@@ -145,29 +145,45 @@ fn a_vehicle_that_stands_on_flanges_does_not_creep() {
 struct Constant;
 
 impl Law for Constant {
-    fn sample(&mut self, t: f64, seen: &[f64]) -> Result<Action, String> {
+    fn sample(&mut self, t: f64, seen: &[f64], set: &mut [Option<f64>]) -> Result<(), String> {
         match seen {
-            [v] if t < 0.15 => Ok(Action { torque: Some(vec![100.0 * v; 6]), independent_brake: None }),
+            [v] if t < 0.15 => {
+                set.fill(Some(100.0 * v));
+                Ok(())
+            }
             _ => Err("it has had enough".to_owned()),
         }
     }
 }
 
+fn controlled(value: &Value, channels: &[&str], outputs: &[&str]) -> railsim::Result<Outcome> {
+    let owned = |names: &[&str]| names.iter().map(|c| (*c).to_owned()).collect();
+    let (name, law) = ("constant".to_owned(), &mut Constant);
+    let mut outside = Outside { name, channels: owned(channels), outputs: owned(outputs), law };
+    simulate_controlled(&case(value), &Free, &mut outside)
+}
+
 #[test]
 fn a_control_law_is_obeyed_and_its_failure_named() {
-    let mut value = locomotive(json!({ "resistance": false, "until": { "time": 0.1 } }));
-    let go = |value: &Value, channels: &[&str]| {
-        let channels = channels.iter().map(|c| (*c).to_owned()).collect();
-        let mut outside = Outside { name: "constant".to_owned(), channels, law: &mut Constant };
-        simulate_controlled(&case(value), &Free, &mut outside)
-    };
-    let outcome = go(&value, &["v"]).unwrap_or_else(|e| panic!("{e}"));
-    let torque = column(&outcome.columns, "ws3.torque");
-    assert!((torque[10] / (100.0 * 22.0 / 3.6 * (1.0 - (-2.0_f64).exp())) - 1.0).abs() < 1e-3);
+    let mut value = locomotive(json!({ "notch": 1, "resistance": false, "until": { "time": 0.1 } }));
+    // One axle, and all axles of a bogie; the rest stays with the vehicle's own controllers.
+    let outcome = controlled(&value, &["v"], &["ws1.torque", "bogie2.torque"]).unwrap();
+    let lagged = 100.0 * 22.0 / 3.6 * (1.0 - (-2.0_f64).exp());
+    let own = column(&outcome.columns, "ws2.torque")[10];
+    for w in [1, 4, 5, 6] {
+        let torque = column(&outcome.columns, &format!("ws{w}.torque"))[10];
+        assert!((torque / lagged - 1.0).abs() < 1e-3, "ws{w}: {torque}");
+    }
+    assert!(own > 2.0 * lagged && own == column(&outcome.columns, "ws3.torque")[10], "{own}");
     value["run"]["drive"]["until"]["time"] = json!(0.3);
-    let failed = go(&value, &["v"]).unwrap_err().to_string();
+    let failed = controlled(&value, &["v"], &["ws1.torque"]).unwrap_err().to_string();
     assert!(failed.contains("constant at t = 0.150 s: it has had enough"), "{failed}");
-    assert!(go(&value, &["nothing"]).unwrap_err().to_string().contains("controller.channels[0]"));
+    let unknown = controlled(&value, &["nothing"], &["ws1.torque", "ws9.torque"]).unwrap_err().to_string();
+    assert!(unknown.contains("controller.channels[0]: "), "{unknown}");
+    assert!(
+        unknown.contains("controller.outputs[1]: ") && unknown.contains("independent_brake"),
+        "{unknown}"
+    );
 }
 
 #[test]

@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
+import heapq
+import itertools
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from types import ModuleType
+from typing import Any, NamedTuple
 
 import polars as pl
 
 from lmap import toml
+from lmap.errors import Problem
 from lmap.execute.cost import estimate
 from lmap.execute.progress import Entry, Progress
 from lmap.execute.store import Store, StoredFrame
-from lmap.spec.case import Case
+from lmap.spec.case import Case, Control
 from lmap.verdict import NO_EXTENT, Extent
 
 END_OF_TRACK = "end_of_track"
 COMPLETE = "complete"
 """An analysis gave all its rows."""
+REFUSED = "refused"
+"""A control law of the user's failed: bad input that only the run brings out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +36,14 @@ class CaseOutcome:
     source: pl.DataFrame | StoredFrame | None
     """The channels, up to where the run ended, or where they lie; nothing where it never started."""
     ended: Mapping[str, Any]
-    """`kind` (`end_of_track`, `complete`, `diverged` or `error`), `t`, `s`, `message`."""
+    """`kind` (`end_of_track`, `complete`, `diverged`, `refused` or `error`), `t`, `s`, `message`."""
     statistics: Mapping[str, Any] = field(default_factory=dict)
     wall_s: float = 0.0
     extent: Extent = NO_EXTENT
     stored: bool = False
     """Whether it was found, not run."""
+    problems: tuple[Problem, ...] = ()
+    """What is wrong with the control law of a case that was `refused`; keys start at the case."""
 
     @property
     def frame(self) -> pl.DataFrame | None:
@@ -67,61 +76,145 @@ def run_cases(
     *,
     jobs: int | None = None,
     progress: Progress | None = None,
-    names: Sequence[str] | None = None,
     store: Store | None = None,
-    known: int = 0,
-    heard: Callable[[str, CaseOutcome], None] | None = None,
 ) -> list[CaseOutcome]:
     """Runs cases on `jobs` threads, the longest first; outcomes stand in the order of the cases.
 
     Each distinct case runs once. A case that cannot run becomes an outcome with its message; Ctrl-C raises
-    `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there. `heard(hash, outcome)` is called
-    as cases end, on the calling thread; `names` are shown while they run (by default their labels), `known` says how
-    many more there are that need no run.
+    `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there, but for those of control laws of
+    the user's, which are never kept.
     """
-    shown = dict(zip((case.hash for case in cases), names or [case.label for case in cases], strict=True))
-    distinct = list({case.hash: case for case in cases}.values())
-    if not distinct:
-        return []
-    costs = {case.hash: estimate(case) for case in distinct}
-    distinct.sort(key=lambda case: -costs[case.hash])
-    threads = max(1, min(jobs or default_jobs(), len(distinct)))
-    outcomes: list[CaseOutcome | None] = [None] * len(distinct)
-    begun: list[float | None] = [None] * len(distinct)
+    distinct = {case.hash: case for case in cases}
+    outcomes: dict[str, CaseOutcome] = {}
+    queue = Queue(Named(case, case.label) for case in distinct.values())
+    run_queue(queue, jobs=jobs, progress=progress, store=store, heard=outcomes.__setitem__)
+    missing = CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
+    return [outcomes.get(case.hash, missing) for case in cases]
+
+
+class Named(NamedTuple):
+    """A case and what progress calls it."""
+
+    case: Case
+    name: str
+
+
+class Queue:
+    """Cases in the order in which they begin: the longest of those at hand.
+
+    Without `ahead` all are at hand from the start. With it so many are, and the next is taken from `cases` when a
+    thread is free: threads share the work of making them too. `about` says how many there will be, as far as is known.
+    """
+
+    def __init__(self, cases: Iterable[Named], *, ahead: int | None = None, about: int = 0) -> None:
+        self._left = iter(cases)
+        self._ahead, self._about = ahead, about
+        self._heap: list[tuple[float, int, Named]] = []
+        self._taken = itertools.count()
+        self.entries: list[Entry] = []
+        """Of the cases that have been handed out, in that order, and without `ahead` of all."""
+        self.handed: list[Case] = []
+        """What has been handed out."""
+        self._laws = contextlib.ExitStack()
+        self._fill()
+        if ahead is None:
+            self.entries = [_entry(named, -cost) for cost, _, named in sorted(self._heap)]
+
+    @property
+    def about(self) -> int:
+        """How many cases there will be."""
+        return max(self._about, len(self.handed) + len(self._heap))
+
+    def __enter__(self) -> None:
+        self._laws.__enter__()
+
+    def __exit__(self, *error: object) -> None:
+        """Ends the control laws that were begun."""
+        self._laws.close()
+
+    def __iter__(self) -> Iterator[str | tuple[str, dict[str, Any]]]:
+        """Each case as the core reads it, with its control law where it has one, begun for this run."""
+        while self._heap:
+            cost, _, named = heapq.heappop(self._heap)
+            self.handed.append(named.case)
+            if self._ahead is not None:
+                self.entries.append(_entry(named, -cost))
+            control = named.case.control
+            yield named.case.core_json if control is None else (named.case.core_json, self._begin(control))
+            self._fill()
+
+    def _begin(self, control: Control) -> dict[str, Any]:
+        running = control.start()
+        self._laws.callback(running.close)
+        return {
+            "name": control.name,
+            "channels": control.channels,
+            "outputs": control.outputs,
+            "sample": running.sample,
+        }
+
+    def _fill(self) -> None:
+        while self._ahead is None or len(self._heap) < self._ahead:
+            named = next(self._left, None)
+            if named is None:
+                self._about = 0  # now it is known
+                return
+            heapq.heappush(self._heap, (-estimate(named.case), next(self._taken), named))
+
+
+def _entry(named: Named, cost: float) -> Entry:
+    return Entry(named.name, _length(named.case), cost)
+
+
+def run_queue(
+    queue: Queue,
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    store: Store | None = None,
+    known: int = 0,
+    heard: Callable[[str, CaseOutcome], None],
+) -> None:
+    """Runs what a queue hands out; `heard(hash, outcome)` is called as cases end, on the calling thread.
+
+    `known` says how many more there are that need no run.
+    """
+    if not queue.about:
+        return
+    threads = max(1, min(jobs or default_jobs(), queue.about))
+    begun: dict[int, float] = {}
     hears = Progress() if progress is None else progress
     railsim = toml.core()
     start = time.perf_counter()
 
     def on_progress(index: int, fraction: float, distance: float, factor: float) -> None:
-        if begun[index] is None:
-            begun[index] = time.perf_counter()
+        begun.setdefault(index, time.perf_counter())
         hears.update(index, fraction, distance, factor)
 
     def on_done(index: int, result: Any) -> None:
-        wall_s = time.perf_counter() - (begun[index] or start)
-        outcome = _outcome(result, wall_s, railsim.RailsimError)
-        case_hash = distinct[index].hash
-        if store is not None:
-            outcome = store.keep(case_hash, outcome)
-        outcomes[index] = outcome
+        wall_s = time.perf_counter() - begun.pop(index, start)
+        case = queue.handed[index]
+        outcome = _outcome(result, wall_s, railsim, case.control)
+        if store is not None and case.control is None:
+            outcome = store.keep(case.hash, outcome)
         hears.done(index, outcome.wall_s, outcome.trouble)
-        if heard is not None:
-            heard(case_hash, outcome)
+        heard(case.hash, outcome)
 
-    entries = [Entry(shown[case.hash], _length(case), costs[case.hash]) for case in distinct]
-    with hears:
-        hears.begin(entries, threads, known)
-        railsim.run_cases([case.core_json for case in distinct], threads, on_progress, on_done, toml.tables())
-    by_hash = {
-        case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
-        for case, outcome in zip(distinct, outcomes, strict=True)
-    }
-    return [by_hash[case.hash] for case in cases]
+    with hears, queue:
+        hears.begin(queue.entries, threads, known, queue.about)
+        railsim.run_cases(queue, threads, on_progress, on_done, toml.tables())
 
 
-def _outcome(result: Any, wall_s: float, error: type[Exception]) -> CaseOutcome:
-    if isinstance(result, error):
-        return CaseOutcome(None, {"kind": "error", "message": str(result)}, wall_s=wall_s)
+def _outcome(result: Any, wall_s: float, railsim: ModuleType, control: Control | None) -> CaseOutcome:
+    if isinstance(result, railsim.RailsimError):
+        message = str(result)
+        if control is None or not isinstance(result, railsim.InputError):
+            return CaseOutcome(None, {"kind": "error", "message": message}, wall_s=wall_s)
+        problems = tuple(
+            problem.at(prefix=("run",)) if problem.key[:1] == ("controller",) else problem
+            for problem in toml.problems_of_core(result)
+        )
+        return CaseOutcome(None, {"kind": REFUSED, "message": message}, wall_s=wall_s, problems=problems)
     statistics = dict(result.statistics)
     ended = dict(result.ended)
     frame = pl.DataFrame(result)

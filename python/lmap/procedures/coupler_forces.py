@@ -21,6 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from lmap.errors import InputProblem, JudgementProblem, Problem
 from lmap.formulas import coupler_angle, coupler_unloading
 from lmap.procedures.base import CaseFigures, at_rest, settings, unloading_units, with_unloading
+from lmap.procedures.couplers import ends
 from lmap.spec.case import Case, VehicleData, build, merged
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, DrawnCurve, Fact
@@ -121,24 +122,9 @@ def _couplers(test: Settings, one: Stepped) -> dict[str, Any]:
     return {"shank": test.shank, "front": course, "rear": course}
 
 
-def _ends(model: Model) -> tuple[float, float]:
-    """Length over couplers and height of the couplers above rail, m."""
-    outline = model.outline
-    if outline is None:
-        found = f"{model.name} without [outline]"
-        raise InputProblem(
-            Problem(
-                key=("vehicle",),
-                found=found,
-                allowed="length_over_couplers and coupler_height in its [outline]",
-            )
-        )
-    return float(outline["length_over_couplers"]), float(outline["coupler_height"])
-
-
 def _loads(test: Settings, model: Model, sign: float) -> list[dict[str, Any]]:
     """Both couplers pull (+) or push: along the vehicle they cancel, across they add up, to the inside (pull)."""
-    length, height = _ends(model)
+    length, height = ends(model)
     across = 2.0 * test.force * math.sin(coupler_angle(length, test.radius))
     position = [0.0, 0.0, -height]
     path = [0.0, sign * across]
@@ -165,7 +151,7 @@ def quantities(
     loads = [float(level[name][0]) for name in level.columns if name.endswith(".Q")]
     if not loads:
         raise JudgementProblem("the vehicle at rest has no wheel loads")
-    length, height = _ends(model)
+    length, height = ends(model)
     angle = coupler_angle(length, test.radius)
     lost = coupler_unloading(test.force, angle, height) / test.wheels_that_share
     formula = pl.DataFrame(

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lmap.errors import KeyPath
+from lmap.procedures import drive_drawings
 from lmap.procedures.base import CaseFigures, settings
 from lmap.spec.case import Case, VehicleData, build, merged
 from lmap.spec.model import Spec
-from lmap.verdict import Fact
+from lmap.verdict import Drawing, Fact
 
 if TYPE_CHECKING:
     import polars as pl
@@ -81,6 +83,26 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     return found
 
 
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """A key of the case where its `[[test.case]]` writes it, or more of it than the spec's own table does."""
+    common: Mapping[str, Any] = {"run": spec.run.rest, "track": spec.track}
+    for index, variant in enumerate(settings(spec, Settings).case):
+        own: Mapping[str, Any] = {"run": variant.run, "track": variant.track}
+        if variant.label == label and _depth(own, key) >= max(2, _depth(common, key)):
+            return ("test", "case", index, *key)
+    return key
+
+
+def _depth(table: Any, key: KeyPath) -> int:
+    """How many steps of a key a table has."""
+    steps = 0
+    for step in key:
+        if not isinstance(table, Mapping) or step not in table:
+            break
+        table, steps = table[step], steps + 1
+    return steps
+
+
 def quantities(
     spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
 ) -> Mapping[str, pl.DataFrame]:
@@ -122,6 +144,18 @@ def _with_sums(frame: pl.DataFrame) -> pl.DataFrame:
         ((v.first() - v.last()) / duration).alias("run.deceleration"),
         (s - s.first()).abs().max().alias("run.movement"),
     )
+
+
+def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData) -> list[Drawing]:
+    """Effort over speed, adhesion over slip, slip, stops, brakes, parking, motors: what the runs have channels for."""
+    runs = {case.label: case.data["run"] for case in cases(spec, vehicle)}
+    published = {
+        label: time
+        for criterion in spec.criterion
+        if "run.duration" in criterion.signal
+        for label, time in criterion.published.items()
+    }
+    return drive_drawings.drawings(quantities, runs, vehicle, published)
 
 
 def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import copy
 import hashlib
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 FORMAT = 1
 """Of the case's JSON; the core refuses another."""
@@ -49,12 +49,36 @@ class VehicleData:
         return True
 
 
+class Sampler(Protocol):
+    """A control law in one run."""
+
+    def sample(self, t: float, period: float, seen: list[float]) -> Sequence[float | None]:
+        """Values of the outputs at time `t` (s), held for `period` (s)."""
+
+    def close(self) -> None:
+        """The run has ended."""
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A control law of the user's: code that stays outside the case, and is run where the case is run."""
+
+    name: str
+    """What messages call it."""
+    channels: tuple[str, ...]
+    """What it sees."""
+    outputs: tuple[str, ...]
+    """What it sets, as the core calls it."""
+    start: Callable[[], Sampler]
+    """A law for one run; raises an `InputProblem`."""
+
+
 @dataclass(frozen=True)
 class Case:
     """One simulation.
 
-    Complete but for the profiles' points until `with_profiles` puts them in, and for measured tracks, which it names
-    by path and SHA-256.
+    Complete but for the profiles' points until `with_profiles` puts them in, and for measured tracks and control laws,
+    which it names with their SHA-256.
     """
 
     label: str
@@ -62,14 +86,18 @@ class Case:
     data: Mapping[str, Any]
     texts: Mapping[str, str] = field(default_factory=dict)
     """Measured tracks as CSV, by the name of the file."""
+    control: Control | None = field(default=None, compare=False)
+    """The control law that `run.controller` names."""
 
     @cached_property
     def core_json(self) -> str:
-        """The same for the core, which opens no file: with the texts of the measured tracks in it."""
-        if not self.texts:
+        """The same for the core, which opens no file: the texts of measured tracks in it, the control law not."""
+        if not self.texts and self.control is None:
             return self.json
         data = copy.deepcopy(dict(self.data))
-        irregularity = data["track"]["irregularity"]
+        if self.control is not None:
+            data["run"].pop("controller", None)
+        irregularity = data["track"].get("irregularity", [])
         for entry in irregularity if isinstance(irregularity, list) else [irregularity]:
             if entry.get("kind") == "measured" and entry.get("file") in self.texts:
                 entry["text"] = self.texts[entry["file"]]
@@ -100,7 +128,7 @@ class Case:
     def with_profiles(self, profiles: Mapping[str, Any]) -> Case:
         """The case with the points of the profiles that it names in it."""
         needed = {name: profiles[name] for name in sorted(self.profile_names) if name in profiles}
-        return Case(self.label, {**self.data, "profiles": needed}, self.texts)
+        return replace(self, data={**self.data, "profiles": needed})
 
 
 def build(*, label: str, vehicle: VehicleData, track: Mapping[str, Any], run: Mapping[str, Any]) -> Case:

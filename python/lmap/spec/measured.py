@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +51,7 @@ def with_records(case: Case, beside: Path) -> Case:
     if not texts:
         return case
     irregularity = found[0] if alone else found
-    return Case(case.label, {**case.data, "track": {**track, "irregularity": irregularity}}, texts)
+    return replace(case, data={**case.data, "track": {**track, "irregularity": irregularity}}, texts=texts)
 
 
 def record_paths(case: Case, beside: Path) -> dict[str, Path]:

@@ -128,6 +128,12 @@ def resolved(vehicle: VehicleData) -> Model:
     )
 
 
+def table(vehicle: VehicleData, name: str) -> dict[str, Any]:
+    """A table of the vehicle's file with its references replaced; empty where there is none."""
+    found: dict[str, Any] = _expanded(vehicle).get(name, {})
+    return found
+
+
 def _connections(written: Mapping[str, Any]) -> Iterator[Connection]:
     ends = written["positions"] if "positions" in written else [written["position"]] * 2
     points = (_point(ends[0]), _point(ends[1]))

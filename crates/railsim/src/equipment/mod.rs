@@ -26,7 +26,7 @@ use crate::equipment::slip::{Gains, Lag, SlipController, SlipObserver, slip};
 use crate::equipment::thermal::Motor;
 use crate::equipment::train::Wagons;
 use crate::math::{Vec3, interpolate};
-use crate::run::law::Action;
+use crate::run::law::Output;
 use crate::schema::drive::{Drive, Inverter};
 use crate::schema::{AirBrake, DynamicBrake, ParkingBrake, Traction};
 
@@ -74,6 +74,20 @@ impl Equipment {
     #[must_use]
     pub fn states(&self, wheelsets: usize) -> usize {
         (stick::MEMORY + 1) * wheelsets + self.train.as_ref().map_or(0, Wagons::states)
+    }
+
+    /// What a control law of the user's can set, by name.
+    #[must_use]
+    pub fn outputs(&self, model: &Model) -> Vec<(String, Output)> {
+        let torque = |name: &str| format!("{name}.torque");
+        let sets = model.wheelsets.iter().enumerate();
+        let mut outputs: Vec<_> = sets.map(|(w, set)| (torque(&set.body.name), Output::Torque(w))).collect();
+        let bogies = self.bogies.iter().enumerate();
+        outputs.extend(bogies.map(|(b, bogie)| (torque(&bogie.name), Output::BogieTorque(b))));
+        if self.air_brake.is_some() {
+            outputs.push(("independent_brake".to_owned(), Output::IndependentBrake));
+        }
+        outputs
     }
 
     /// What is recorded, by name.
@@ -339,16 +353,17 @@ impl<'m> Acting<'m> {
         self.press();
     }
 
-    /// Puts a control law's answer at time `t` over what the vehicle's own controllers have just commanded; brakes follow from the
-    /// next sample on.
-    pub fn overrule(&mut self, t: f64, action: &Action) {
-        if let Some(torques) = &action.torque {
-            for (lag, torque) in self.torques.iter_mut().zip(torques) {
-                lag.command(t, self.lag, *torque);
+    /// Puts what a control law sets at time `t` over what the vehicle's own controllers have just commanded; brakes follow from
+    /// the next sample on.
+    pub fn overrule(&mut self, t: f64, output: Output, value: f64) {
+        match output {
+            Output::Torque(w) => self.torques[w].command(t, self.lag, value),
+            Output::BogieTorque(b) => {
+                for w in &self.design.bogies[b].wheelsets {
+                    self.torques[*w].command(t, self.lag, value);
+                }
             }
-        }
-        if action.independent_brake.is_some() {
-            self.asked = action.independent_brake;
+            Output::IndependentBrake => self.asked = Some(value),
         }
     }
 

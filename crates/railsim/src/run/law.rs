@@ -6,30 +6,35 @@ use crate::integrator::System;
 use crate::run::channel::{Source, plan};
 use crate::run::recorder::value;
 
-/// What a control law sets; what it leaves out stays with the vehicle's own controllers.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Action {
-    /// Torque asked of the inverter of each wheelset, N m, + forward.
-    pub torque: Option<Vec<f64>>,
-    /// Pressure asked for in the vehicle's own brake cylinders, Pa.
-    pub independent_brake: Option<f64>,
+/// What a control law can set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Output {
+    /// `<wheelset>.torque`: torque asked of the inverter of a wheelset, N m, + forward.
+    Torque(usize),
+    /// `<bogie>.torque`: the same on each wheelset of a bogie.
+    BogieTorque(usize),
+    /// `independent_brake`: pressure asked for in the vehicle's own brake cylinders, Pa.
+    IndependentBrake,
 }
 
 /// A control law.
 pub trait Law {
-    /// Asked at every sample with the time (s) and the channels that it declared, in their order.
+    /// Asked at every sample with the time (s) and the channels that it declared, in their order; writes what it sets, in the
+    /// order of its outputs. What it leaves `None` stays with the vehicle's own controllers.
     ///
     /// # Errors
     /// Why it could not answer, in words.
-    fn sample(&mut self, t: f64, seen: &[f64]) -> std::result::Result<Action, String>;
+    fn sample(&mut self, t: f64, seen: &[f64], set: &mut [Option<f64>]) -> std::result::Result<(), String>;
 }
 
-/// A control law with the names of the channels that it sees.
+/// A control law with the names of what it sees and sets.
 pub struct Outside<'a> {
     /// What a message calls it.
     pub name: String,
-    /// Channels.
+    /// Channels that it sees.
     pub channels: Vec<String>,
+    /// What it sets, by the names of [`Output`].
+    pub outputs: Vec<String>,
     /// The law.
     pub law: &'a mut dyn Law,
 }
@@ -39,6 +44,7 @@ impl std::fmt::Debug for Outside<'_> {
         f.debug_struct("Outside")
             .field("name", &self.name)
             .field("channels", &self.channels)
+            .field("outputs", &self.outputs)
             .finish_non_exhaustive()
     }
 }
@@ -47,30 +53,30 @@ impl std::fmt::Debug for Outside<'_> {
 pub(crate) struct Watching<'a, 'o> {
     outside: &'o mut Outside<'a>,
     sources: Vec<Source>,
+    outputs: Vec<Output>,
     seen: Vec<f64>,
+    set: Vec<Option<f64>>,
     slope: Vec<f64>,
 }
 
 impl<'a, 'o> Watching<'a, 'o> {
-    /// Looks the channels up.
+    /// Looks channels and outputs up.
     pub fn new(outside: &'o mut Outside<'a>, system: &VehicleSystem<'_>) -> Result<Self> {
-        let known = plan(system.model);
-        let at = KeyPath::of("controller").key("channels");
-        let (mut sources, mut faults) = (Vec::new(), Vec::new());
-        for (i, name) in outside.channels.iter().enumerate() {
-            match known.iter().find(|(n, _)| n == name) {
-                Some((_, source)) => sources.push(*source),
-                None => {
-                    let allowed = "a channel of the run (`lmap channels VEHICLE` lists them)";
-                    faults.push(Fault::new(at.index(i), format!("`{name}`"), allowed));
-                }
+        let at = KeyPath::of("controller");
+        let allowed = "a channel of the run (`lmap channels VEHICLE` lists them)";
+        let channels = find(&outside.channels, &plan(system.model), &at.key("channels"), allowed);
+        let known = system.model.equipment.as_ref().map_or(Vec::new(), |e| e.outputs(system.model));
+        let allowed: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
+        let outputs = find(&outside.outputs, &known, &at.key("outputs"), &allowed.join(", "));
+        let (sources, outputs) = match (channels, outputs) {
+            (Ok(sources), Ok(outputs)) => (sources, outputs),
+            (channels, outputs) => {
+                let faults = [channels.err(), outputs.err()].into_iter().flatten().flatten().collect();
+                return Err(Error::Input(faults));
             }
-        }
-        if !faults.is_empty() {
-            return Err(Error::Input(faults));
-        }
-        let seen = vec![0.0; sources.len()];
-        Ok(Self { outside, sources, seen, slope: vec![0.0; system.size()] })
+        };
+        let (seen, set) = (vec![0.0; sources.len()], vec![None; outputs.len()]);
+        Ok(Self { outside, sources, outputs, seen, set, slope: vec![0.0; system.size()] })
     }
 
     /// Asks the law at `t`, `x` and puts its answer into the equipment.
@@ -80,33 +86,49 @@ impl<'a, 'o> Watching<'a, 'o> {
         for (value_, source) in self.seen.iter_mut().zip(&self.sources) {
             *value_ = value(*source, system, map, t, x, &self.slope);
         }
-        let wheelsets = system.model.wheelsets.len();
-        let action = self.outside.law.sample(t, &self.seen).and_then(|action| checked(action, wheelsets));
-        let action = action.map_err(|why| {
+        self.set.fill(None);
+        let answer = self.outside.law.sample(t, &self.seen, &mut self.set);
+        answer.and_then(|()| self.check()).map_err(|why| {
             let found = format!("{} at t = {t:.3} s: {why}", self.outside.name);
             let allowed = "a control law that answers every time with finite numbers";
             Error::input(Fault::new(KeyPath::of("controller"), found, allowed))
         })?;
         if let Some(acting) = &mut system.acting {
-            acting.overrule(t, &action);
+            for (output, value) in self.outputs.iter().zip(&self.set) {
+                if let Some(value) = value {
+                    acting.overrule(t, *output, *value);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check(&self) -> std::result::Result<(), String> {
+        for ((name, output), value) in self.outside.outputs.iter().zip(&self.outputs).zip(&self.set) {
+            let Some(value) = value else { continue };
+            let brake = *output == Output::IndependentBrake;
+            if !value.is_finite() || (brake && *value < 0.0) {
+                let unit = if brake { "Pa" } else { "N m" };
+                return Err(format!("{name} = {value} {unit}"));
+            }
         }
         Ok(())
     }
 }
 
-fn checked(action: Action, wheelsets: usize) -> std::result::Result<Action, String> {
-    if let Some(torque) = &action.torque {
-        if torque.len() != wheelsets {
-            return Err(format!("{} torques for {wheelsets} wheelsets", torque.len()));
-        }
-        if let Some(bad) = torque.iter().find(|v| !v.is_finite()) {
-            return Err(format!("a torque of {bad} N m"));
+/// What stands behind each of `names`; a fault for each that `known` has not.
+fn find<T: Copy>(
+    names: &[String],
+    known: &[(String, T)],
+    at: &KeyPath,
+    allowed: &str,
+) -> std::result::Result<Vec<T>, Vec<Fault>> {
+    let (mut found, mut faults) = (Vec::new(), Vec::new());
+    for (i, name) in names.iter().enumerate() {
+        match known.iter().find(|(n, _)| n == name) {
+            Some((_, one)) => found.push(*one),
+            None => faults.push(Fault::new(at.index(i), format!("`{name}`"), allowed)),
         }
     }
-    if let Some(pressure) = action.independent_brake
-        && !(pressure.is_finite() && pressure >= 0.0)
-    {
-        return Err(format!("an independent_brake of {pressure} Pa"));
-    }
-    Ok(action)
+    if faults.is_empty() { Ok(found) } else { Err(faults) }
 }

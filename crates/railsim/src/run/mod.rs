@@ -8,5 +8,5 @@ pub mod stability;
 pub mod time_stepping;
 
 pub use channel::{Channel, channels};
-pub use law::{Action, Law, Outside};
+pub use law::{Law, Output, Outside};
 pub use time_stepping::{Control, Ended, Free, Outcome, simulate, simulate_controlled};

@@ -13,6 +13,10 @@ _EQUAL_HEIGHT = 560
 """Of a drawing with equal axes, which is mostly a cross-section, pixels."""
 
 
+_ROLES = {"limit": "limit", "reference": "raw"}
+"""Colours of what is no curve of its own."""
+
+
 def draw(spec: SpecVerdict) -> list[Figure]:
     """A figure for each drawing."""
     return [
@@ -28,8 +32,8 @@ def draw(spec: SpecVerdict) -> list[Figure]:
 def _plot(drawing: Drawing) -> Plot:
     lines: list[Line] = []
     for curve in drawing.curves:
-        number = 1 + sum(line.role != "limit" for line in lines)
-        lines.append(_line(curve, "limit" if curve.role == "limit" else str(number)))
+        number = 1 + sum(line.role not in _ROLES.values() for line in lines)
+        lines.append(_line(curve, _ROLES.get(curve.role, str(number))))
     return Plot(
         x_title=drawing.x_label,
         y_title=drawing.y_label,
@@ -49,6 +53,7 @@ def _line(curve: DrawnCurve, role: str) -> Line:
         x=x,
         y=y,
         role=role,
-        mode="markers" if curve.role == "points" else "lines",
+        mode="markers" if curve.role in ("points", "mark") else "lines",
+        size=12.0 if curve.role == "mark" else 6.0,
         dash="dash" if curve.role == "limit" else "solid",
     )
