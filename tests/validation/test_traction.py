@@ -235,7 +235,7 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
     frames = {case.label: case.frame for case in spec.cases}
     radius, length = 160.0, 22.0
     # While vehicle and neighbour stand in the first curve, 60 to 110 m, with all their bogies. L/2R is for a body
-    # on its chord; ours stands beside that, by `aside` at the coupler's pivot, which is 1.5 m from the neighbour's.
+    # on its chord; ours stands beside that, by `aside` at the coupler's pivot, which is 1.6 m from the neighbour's.
     for end, begin, last in ((1, 70.0, 80.0), (-1, 92.0, 102.0)):
         name = {1: "front", -1: "rear"}[end]
         for way in ("draft", "buff"):
@@ -243,8 +243,8 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
                 mean_at(frames[way], channel, begin, last)
                 for channel in ("carbody.y", "carbody.phi", "carbody.psi", f"coupler.{name}.angle")
             )
-            aside = y - 1.05 * phi - 13.2**2 / (8 * radius) + end * (length / 2 - 0.75) * psi
-            closed = length / (2 * radius) - aside / 1.5 - end * psi
+            aside = y - 1.05 * phi - 13.2**2 / (8 * radius) + end * (length / 2 - 0.8) * psi
+            closed = length / (2 * radius) - aside / 1.6 - end * psi
             what = f"angle of the {name} coupler, {way}, mrad"
             compare(what, 1e3 * angle, 1e3 * closed, 2.0, "L/2R with the body where it stands")
     train = frames["train, hauling"]
