@@ -86,7 +86,7 @@ def test_a_law_sets_what_it_likes_by_name() -> None:
     def law(t: float, channels: dict[str, float]) -> dict[str, float]:
         return {"ws1.torque": 1000.0, "bogie2.torque": 2000.0}
 
-    frame = controller.simulate(short(notch=1, effort_limit=30e3), law)
+    frame = controller.simulate(short(notch=8, effort_limit=30e3), law)
     lagged = 1.0 - math.exp(-4.0)
     for w, torque in ((1, 1000.0), (4, 2000.0), (5, 2000.0), (6, 2000.0)):
         assert frame[f"ws{w}.torque"][-1] == pytest.approx(torque * lagged, rel=1e-6)

@@ -119,7 +119,7 @@ def run_cases(
     with hears, _laws(distinct) as laws:
         hears.begin(entries, threads, known)
         cores = [case.core_json for case in distinct]
-        railsim.run_cases(cores, threads, on_progress, on_done, toml.tables(), *([laws] if laws else []))
+        railsim.run_cases(cores, threads, on_progress, on_done, toml.tables(), laws)
     by_hash = {
         case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
         for case, outcome in zip(distinct, outcomes, strict=True)

@@ -96,7 +96,7 @@ class Case:
             return self.json
         data = copy.deepcopy(dict(self.data))
         if self.control is not None:
-            del data["run"]["controller"]
+            data["run"].pop("controller", None)
         irregularity = data["track"].get("irregularity", [])
         for entry in irregularity if isinstance(irregularity, list) else [irregularity]:
             if entry.get("kind") == "measured" and entry.get("file") in self.texts:
