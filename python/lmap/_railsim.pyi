@@ -4,7 +4,7 @@ Everything that runs for long releases the GIL. Documents, cases and overrides c
 was written. SI units; profiles alone are in millimetres, as their files are.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, TypedDict, final
 
 from typing_extensions import Buffer, CapsuleType
@@ -340,20 +340,20 @@ def contact_map(
     """
 
 def run_cases(
-    cases: Sequence[str],
+    cases: Iterable[str | tuple[str, _Law]],
     jobs: int,
     on_progress: Callable[[int, float, float, float], object],
     on_done: Callable[[int, Frame | RailsimError], object],
     tables: Tables | None = None,
-    laws: Mapping[int, _Law] | None = None,
 ) -> None:
     """Run cases on `jobs` threads, begun in their order; returns when the last one has ended.
 
-    `laws` gives control laws by the index of their case. `sample(t, period, seen)` is called on the thread of that
-    case every `run.drive.period`, with the time, the period (s) and the values of `channels`; it gives a value for
-    each of `outputs` (`<wheelset>.torque` and `<bogie>.torque`, N m; `independent_brake`, Pa), `None` for what stays
-    with the vehicle's own controllers. An exception in it, or an answer that is no finite number, is the case's
-    failure and names `name`.
+    `cases` is asked for the next case when a thread is free, on that thread; an exception in it stops every run as one
+    from a callback does. A case is JSON, or a pair of JSON and a control law: `sample(t, period, seen)` is called on
+    the thread of that case every `run.drive.period`, with the time, the period (s) and the values of `channels`; it
+    gives a value for each of `outputs` (`<wheelset>.torque` and `<bogie>.torque`, N m; `independent_brake`, Pa), `None`
+    for what stays with the vehicle's own controllers. An exception in it, or an answer that is no finite number, is the
+    case's failure and names `name`.
 
     Both callbacks are called on the calling thread: `on_progress(index, fraction, distance_m,
     real_time_factor)` about ten times a second for each case that is on its way, `on_done(index, result)`

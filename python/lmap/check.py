@@ -9,7 +9,7 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from lmap.execute.progress import Progress
     from lmap.execute.store import Store
     from lmap.prepare import Prepared
-    from lmap.spec.case import Case
 
 
 def check(
@@ -70,42 +69,47 @@ def open_store(cache: bool | str | Path) -> Store:
 
 
 def judge_all(
-    prepared: Sequence[Prepared],
+    prepared: Iterable[Prepared],
     store: Store,
     *,
     jobs: int | None = None,
     progress: Progress | None = None,
-    heard: Callable[[int, SpecVerdict], None] | None = None,
+    ahead: int | None = None,
+    about: int = 1,
     tolerant: bool = False,
 ) -> list[SpecVerdict]:
     """Runs what is not in the store, all cases of all specs in one pool; each spec is judged as its last case ends.
 
-    Verdicts stand in the order of the specs. `heard(position, verdict)` is called as they come. Control laws that fail
-    are an `InputProblem` in the end; with `tolerant` their cases could not be judged, and that is all.
+    Verdicts stand in the order of the specs. With `ahead` so many cases are at hand at a time, and `prepared` is asked
+    for the next spec, of `about` that it will give, when a thread is free. Control laws that fail are an `InputProblem`
+    in the end; with `tolerant` their cases could not be judged, and that is all.
     """
-    from lmap.execute.local import run_cases
+    from lmap.execute.local import Named, Queue, run_queue
 
     outcomes: dict[str, CaseOutcome] = {}
+    taken: list[Prepared] = []
     waiting: list[builtins.set[str]] = []
-    missing: dict[str, tuple[Case, str]] = {}
-    for one in prepared:
-        for case in one.cases:
-            if case.hash in outcomes or case.hash in missing:
-                continue
-            # what a control law does hangs on code that the case does not hold
-            found = None if case.control is not None else store.outcome(case.hash)
-            if found is None:
-                missing[case.hash] = (case, _name(one, case, alone=len(prepared) == 1))
-            else:
-                outcomes[case.hash] = found
-        waiting.append({case.hash for case in one.cases if case.hash in missing})
-    verdicts: list[SpecVerdict | None] = [None] * len(prepared)
+    verdicts: dict[int, SpecVerdict] = {}
+    several = about > 1 or (isinstance(prepared, Sequence) and len(prepared) > 1)
+
+    def missing() -> Iterator[Named]:
+        asked: builtins.set[str] = set()
+        for one in prepared:
+            new = {case.hash: case for case in one.cases if case.hash not in asked}
+            asked |= new.keys()
+            for case_hash, case in list(new.items()):
+                # what a control law does hangs on code that the case does not hold
+                found = None if case.control is not None else store.outcome(case_hash)
+                if found is not None:
+                    outcomes[case_hash] = found
+                    del new[case_hash]
+            taken.append(one)
+            waiting.append({case.hash for case in one.cases if case.hash not in outcomes})
+            for case in new.values():
+                yield Named(case, f"{one.spec.id} {case.label}" if several else case.label)
 
     def settle(position: int) -> None:
-        verdict = _settled(prepared[position], outcomes, store)
-        verdicts[position] = verdict
-        if heard is not None:
-            heard(position, verdict)
+        verdicts[position] = _settled(taken[position], outcomes, store)
 
     def ended(case_hash: str, outcome: CaseOutcome) -> None:
         outcomes[case_hash] = outcome
@@ -115,27 +119,20 @@ def judge_all(
                 if not left:
                     settle(position)
 
-    run_cases(
-        [case for case, _ in missing.values()],
-        jobs=jobs,
-        progress=progress,
-        names=[name for _, name in missing.values()],
-        store=store,
-        known=len(outcomes),
-        heard=ended,
-    )
+    queue = Queue(missing(), ahead=ahead, about=about if ahead is not None else 0)
+    run_queue(queue, jobs=jobs, progress=progress, store=store, known=len(outcomes), heard=ended)
     failed = [
         one.locate(case.label, problem)
-        for one in prepared
+        for one in taken
         for case in one.cases
         for problem in outcomes[case.hash].problems
     ]
     if failed and not tolerant:
         raise InputProblem(failed)
-    for position in range(len(prepared)):
-        if verdicts[position] is None:
+    for position in range(len(taken)):
+        if position not in verdicts:
             settle(position)
-    return [verdict for verdict in verdicts if verdict is not None]
+    return [verdicts[position] for position in range(len(taken))]
 
 
 def _settled(one: Prepared, outcomes: dict[str, CaseOutcome], store: Store) -> SpecVerdict:
@@ -152,11 +149,6 @@ def _settled(one: Prepared, outcomes: dict[str, CaseOutcome], store: Store) -> S
             [case] = [case for case in one.cases if case.hash == lost.case_hash][:1]
             [outcomes[case.hash]] = run_cases([case], jobs=1, store=store)
     return judge_spec(one, outcomes, store)
-
-
-def _name(one: Prepared, case: Case, *, alone: bool) -> str:
-    """A case as progress calls it."""
-    return case.label if alone else f"{one.spec.id} {case.label}"
 
 
 def version() -> str:
@@ -297,7 +289,7 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
 
     Within, not beside: `folder` may be a file system of its own, and what is above it not ours to write. A
     check that is interrupted before it is judged leaves what was there before, no folder where there was none. The page
-    comes last. Cases of an earlier check stay beside this one's.
+    comes last. A folder holds one report: cases of an earlier one in it are removed, and nothing else.
     """
     from lmap.report import write_report as write
 
@@ -312,6 +304,7 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
                 target = folder / path.relative_to(partial)
                 _make_folder(target.parent, created)
                 path.replace(target)
+            _remove_cases(folder / "cases", keep={path.name for path in made})
         finally:
             shutil.rmtree(partial, ignore_errors=True)
     except OSError as error:
@@ -322,6 +315,14 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
         for one in reversed(created):
             with contextlib.suppress(OSError):  # what holds something stays
                 one.rmdir()
+
+
+def _remove_cases(folder: Path, keep: builtins.set[str]) -> None:
+    """Removes the cases that another report has left: files that are called by a hash."""
+    for path in folder.glob("*.*") if folder.is_dir() else ():
+        if path.name not in keep and re.fullmatch(r"[0-9a-f]{64}\.(json|parquet)", path.name):
+            with contextlib.suppress(OSError):
+                path.unlink()
 
 
 def _make_folder(folder: Path, created: list[Path]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import polars as pl
 
     from lmap.execute.progress import Progress
-    from lmap.execute.store import Store
     from lmap.prepare import Prepared
 
 SAMPLES = 5
@@ -28,7 +27,9 @@ SAMPLES = 5
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 AT_ONCE = 256
-"""Variants that are prepared before they run: a case's text takes 100 kB and more."""
+"""Variants that are held until the last of them has run: a case's text takes 100 kB and more."""
+AHEAD = 8
+"""Cases that are at hand at a time, of which the longest begins: variants are prepared while others run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,38 +116,38 @@ def sweep(
             Problem(key=("--vary",), found=f"{both[0]}, which is set", allowed="either of the two")
         )
     store = open_store(cache)
-    rows: dict[int, list[dict[str, Any]]] = {}
-    faults: list[InputProblem] = []
-    for begin in range(0, len(variants), AT_ONCE):
-        part = range(begin, min(begin + AT_ONCE, len(variants)))
-        prepared: dict[int, Prepared] = {}
-        for number in part:
+    faults: dict[int, InputProblem] = {}
+
+    def prepared(numbers: Iterable[int], valid: list[int]) -> Iterator[Prepared]:
+        from lmap.prepare import prepare
+
+        for number in numbers:
             try:
-                prepared[number] = _prepared(path, overrides.checked({**fixed, **variants[number]}), store)
+                one = prepare(path, overrides.checked({**fixed, **variants[number]}), store)
             except InputProblem as problem:
-                faults.append(problem)
-                rows[number] = [_fault(number, variants[number], problem)]
-        for number, found in _judged(prepared, store, jobs, progress):
+                faults[number] = problem
+            else:
+                valid.append(number)
+                yield one
+
+    rows: dict[int, list[dict[str, Any]]] = {}
+    for begin in range(0, len(variants), AT_ONCE):
+        part, valid = range(begin, min(begin + AT_ONCE, len(variants))), list[int]()
+        verdicts = judge_all(
+            prepared(part, valid),
+            store,
+            jobs=jobs,
+            progress=progress,
+            ahead=AHEAD,
+            about=len(part),
+            tolerant=True,
+        )
+        for number, found in zip(valid, verdicts, strict=True):
             rows[number] = list(_rows(number, variants[number], found))
     if len(faults) == len(variants):
         raise faults[0]
+    rows |= {number: [_fault(number, variants[number], fault)] for number, fault in faults.items()}
     return _table([row for number in sorted(rows) for row in rows[number]], variants)
-
-
-def _prepared(path: Path, settings: Mapping[str, Any], store: Store) -> Prepared:
-    from lmap.prepare import prepare
-
-    return prepare(path, settings, store)
-
-
-def _judged(
-    prepared: Mapping[int, Prepared], store: Store, jobs: int | None, progress: Progress | None
-) -> Iterator[tuple[int, SpecVerdict]]:
-    if prepared:
-        numbers = list(prepared)
-        cases = [prepared[number] for number in numbers]
-        verdicts = judge_all(cases, store, jobs=jobs, progress=progress, tolerant=True)
-        yield from zip(numbers, verdicts, strict=True)
 
 
 def _rows(number: int, settings: Mapping[str, Any], spec: SpecVerdict) -> Iterator[dict[str, Any]]:

@@ -12,7 +12,7 @@ import math
 import re
 import time
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import polars as pl
@@ -256,16 +256,16 @@ def _simulate(case: dict[str, Any]) -> Frame | RailsimError:
 
 
 def run_cases(
-    cases: list[str],
+    cases: Iterable[str],
     jobs: int,
     on_progress: Callable[[int, float, float, float], None],
     on_done: Callable[[int, Any], None],
     tables: Tables | None = None,
-    laws: dict[int, Any] | None = None,
 ) -> None:
+    texts = list(cases)
     # last first: results must find their own place
-    for index in reversed(range(len(cases))):
-        case = json.loads(cases[index])
+    for index in reversed(range(len(texts))):
+        case = json.loads(texts[index])
         length = case["track"]["length"]
         for part in range(1, 11):
             time.sleep(SLOW / 10.0)

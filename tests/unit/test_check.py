@@ -29,7 +29,7 @@ class Heard(Progress):
     def __init__(self) -> None:
         self.events: list[tuple[Any, ...]] = []
 
-    def begin(self, cases: Any, jobs: int, known: int = 0) -> None:
+    def begin(self, cases: Any, jobs: int, known: int = 0, about: int = 0) -> None:
         self.events.append(("begin", list(cases), jobs))
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
@@ -316,3 +316,13 @@ def test_a_vehicle_is_loaded_and_resolved() -> None:
     soft = toy.resolve({"secondary.kz": 1.0}, condition="tare")
     assert soft.data.document["parameters"]["secondary.kz"] == 1.0
     assert toy.data.document["parameters"]["secondary.kz"] == 5.8e5
+
+
+def test_a_report_folder_holds_the_cases_of_one_check(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    first = lmap.check("sway", report=folder)
+    (folder / "cases" / "mine.json").write_text("{}", encoding="utf-8")
+    second = lmap.check("sway", set={"run.speed_kmh": 90}, report=folder)
+    hashes = {case.hash for case in second.specs[0].cases}
+    assert hashes.isdisjoint(case.hash for case in first.specs[0].cases)
+    assert {path.stem for path in (folder / "cases").iterdir()} == hashes | {"mine"}

@@ -99,6 +99,13 @@ def test_skip_drops_the_run_in_and_refuses_to_drop_everything() -> None:
         Skip(start_s=100.0).apply(sine(1.0))
 
 
+def test_skip_keeps_what_comes_after_wherever_the_vehicle_rolls() -> None:
+    t = [0.0, 1.0, 2.0, 3.0, 4.0]
+    signal = pl.DataFrame({"t": t, "s": [5.0, 4.0, 3.0, 4.0, 5.0], "x": t})
+    assert Skip(start_s=1.0).apply(signal)["x"].to_list() == [1.0, 2.0, 3.0, 4.0]
+    assert Skip(start_m=2.0).apply(signal)["x"].to_list() == [2.0, 3.0, 4.0]
+
+
 @pytest.mark.parametrize("zero_phase", [True, False])
 @pytest.mark.parametrize(("low", "high"), [(0.4, 10.0), (2.0, 6.0), (8.0, 40.0)])
 def test_bandpass_is_3_db_down_at_both_ends(low: float, high: float, zero_phase: bool) -> None:

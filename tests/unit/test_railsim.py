@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import polars as pl
@@ -404,6 +405,31 @@ def test_vehicle_that_is_no_object_is_bad_input(broken: str) -> None:
         _railsim.vehicle_resolve(broken, "{}")
     with pytest.raises(_railsim.InputError):
         _railsim.vehicle_resolve("{}", broken)
+
+
+def test_cases_are_taken_one_by_one_when_a_thread_is_free(case: str) -> None:
+    made, ended = list[int](), list[int]()
+
+    def make() -> Iterator[str]:
+        for number in range(5):
+            made.append(number)
+            assert len(made) - len(ended) <= 2
+            yield case
+
+    _railsim.run_cases(make(), 2, lambda *_: None, lambda index, _: ended.append(index))
+    assert sorted(ended) == made == [0, 1, 2, 3, 4]
+
+
+def test_an_error_while_a_case_is_made_stops_every_run_and_is_raised_again(case: str) -> None:
+    data = json.loads(case)
+    data["track"]["length"] = 1e6
+
+    def make() -> Iterator[str]:
+        yield json.dumps(data)
+        raise LookupError("no second one")
+
+    with pytest.raises(LookupError, match="no second one"):
+        _railsim.run_cases(make(), 2, lambda *_: None, lambda *_: None)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a process are sent otherwise there")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -26,9 +27,10 @@ def ran(fake_core: ModuleType, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     labels: list[str] = []
     really = fake_core.run_cases
 
-    def counted(cases: list[str], *others: Any) -> None:
-        labels.extend(json.loads(case)["label"] for case in cases)
-        really(cases, *others)
+    def counted(cases: Iterable[str], *others: Any) -> None:
+        texts = list(cases)
+        labels.extend(json.loads(case)["label"] for case in texts)
+        really(texts, *others)
 
     monkeypatch.setattr(fake_core, "run_cases", counted)
     return labels
@@ -188,19 +190,18 @@ def test_clear_removes_results_and_nothing_else() -> None:
     assert usage(default_folder()).size == 0
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="platformdirs has other variables elsewhere")
 @pytest.mark.parametrize(
-    ("platform", "variables", "folder"),
+    ("variables", "folder"),
     [
-        ("linux", {"XDG_CACHE_HOME": "/x"}, "/x/lmap"),
-        ("linux", {"HOME": "/h"}, "/h/.cache/lmap"),
-        ("darwin", {"HOME": "/h"}, "/h/Library/Caches/lmap"),
-        ("linux", {"LMAP_CACHE_DIR": "/mine", "XDG_CACHE_HOME": "/x"}, "/mine"),
+        ({"XDG_CACHE_HOME": "/x"}, "/x/lmap"),
+        ({"HOME": "/h"}, "/h/.cache/lmap"),
+        ({"LMAP_CACHE_DIR": "/mine", "XDG_CACHE_HOME": "/x"}, "/mine"),
     ],
 )
 def test_the_folder_is_the_users_cache(
-    platform: str, variables: dict[str, str], folder: str, monkeypatch: pytest.MonkeyPatch
+    variables: dict[str, str], folder: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sys.platform", platform)
     for name in ("LMAP_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     for name, value in variables.items():

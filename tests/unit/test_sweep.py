@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -12,7 +13,7 @@ import pytest
 
 from lmap.errors import InputProblem
 from lmap.report.sweep import page, summary
-from lmap.sweep import Variation, grid, sweep, variation
+from lmap.sweep import AHEAD, Variation, grid, sweep, variation
 
 
 @pytest.mark.parametrize(
@@ -95,6 +96,29 @@ class TestOnTheStandIn:
         first = sweep("sway", {"run.speed_kmh": [90, 100]})
         monkeypatch.setattr(fake_core, "run_cases", lambda *_: pytest.fail("nothing is new"))
         assert sweep("sway", {"run.speed_kmh": [90, 100]}).equals(first)
+
+    def test_a_variant_is_prepared_when_it_is_about_to_run(
+        self, fake_core: ModuleType, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        checked, begun = list[str](), list[int]()
+        check, really = fake_core.check_case, fake_core.run_cases
+
+        def run(cases: Iterable[str], *rest: Any) -> None:
+            texts = []
+            for text in cases:
+                begun.append(len(checked))
+                texts.append(text)
+            really(texts, *rest)
+
+        def checking(text: str, *rest: Any) -> None:
+            checked.append(text)
+            check(text, *rest)
+
+        monkeypatch.setattr(fake_core, "check_case", checking)
+        monkeypatch.setattr(fake_core, "run_cases", run)
+        sweep("sway", {"run.speed_kmh": list(range(90, 110)), "run.wheel_profile": ["round"]})
+        assert len(begun) == 20
+        assert begun == [min(AHEAD + before, 20) for before in range(20)]
 
     def test_a_variant_that_is_no_model_or_diverges_is_a_row(self) -> None:
         frame = sweep("sway", {"run.speed_kmh": [100, -5]})

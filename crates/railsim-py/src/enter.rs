@@ -9,13 +9,13 @@ use std::any::Any;
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
+use railsim::Result;
 use railsim::run::Control;
-use railsim::{Error, Result};
 use rayon::ThreadPoolBuilder;
 
 use crate::errors::{Failure, InternalError};
@@ -55,45 +55,40 @@ pub trait Listener: Send {
     fn done(&mut self, py: Python<'_>, finished: Finished<Self::Output>) -> PyResult<()>;
 }
 
-/// Runs `work(index, control)` for every index below `count` on `jobs` threads.
+/// Runs `work(case, control)` for every case on `jobs` threads. A case is taken from `cases` when a thread is free for it, on
+/// that thread and by one thread at a time; its index counts from 0.
 ///
 /// # Errors
-/// Whatever the listener raised, `KeyboardInterrupt` from a signal, or `InternalError` when no threads could
+/// What `cases` or the listener raised, `KeyboardInterrupt` from a signal, or `InternalError` when no threads could
 /// be made. Failures of single cases go to the listener.
-pub fn enter<L, W>(
+pub fn enter<C, I, L, W>(
     py: Python<'_>,
-    count: usize,
+    cases: I,
     jobs: NonZeroUsize,
     work: W,
     listener: &mut L,
 ) -> PyResult<()>
 where
+    C: Send,
+    I: Iterator<Item = PyResult<C>> + Send,
     L: Listener,
-    W: Fn(usize, &dyn Control) -> Result<L::Output> + Sync,
+    W: Fn(C, &dyn Control) -> Result<L::Output> + Sync,
 {
     let stop = AtomicBool::new(false);
-    let slots: Vec<Slot> = (0..count).map(|_| Slot { stop: &stop, state: Mutex::default() }).collect();
+    let slots: Vec<Slot> = (0..jobs.get()).map(|_| Slot { stop: &stop, state: Mutex::default() }).collect();
+    let queue = Mutex::new(cases.enumerate().fuse());
     py.detach(|| {
         let pool = ThreadPoolBuilder::new()
-            .num_threads(jobs.get().min(count.max(1)))
+            .num_threads(jobs.get())
             .thread_name(|i| format!("railsim-{i}"))
             .build()
             .map_err(|e| InternalError::new_err(format!("no worker threads: {e}")))?;
-        let (sender, receiver) = channel::<Handed<L::Output>>();
+        let (sender, receiver) = channel();
         // The scope joins every worker before it returns, whatever happened in it.
         pool.in_place_scope_fifo(|scope| {
-            for (index, slot) in slots.iter().enumerate() {
-                let (sender, work) = (sender.clone(), &work);
-                scope.spawn_fifo(move |_| {
-                    let finished = slot.run(index, work);
-                    let (taken, wait) = sync_channel::<()>(0);
-                    // Nobody listens any more after an exception; the result is not wanted then.
-                    if sender.send((finished, taken)).is_ok() {
-                        // Until the listener has dealt with it and lets go of `taken`: no more than `jobs` results
-                        // wait in memory, and `jobs` threads are all that works.
-                        let _ = wait.recv();
-                    }
-                });
+            for slot in &slots {
+                let (sender, work, queue) = (sender.clone(), &work, &queue);
+                scope.spawn_fifo(move |_| slot.serve(queue, work, &sender));
             }
             drop(sender);
             attend(receiver, &slots, listener).inspect_err(|_| stop.store(true, Ordering::Relaxed))
@@ -101,8 +96,8 @@ where
     })
 }
 
-/// A finished case, and what its worker waits on: dropped when the case has been dealt with.
-type Handed<T> = (Finished<T>, SyncSender<()>);
+/// A finished case, or why there is no next one, and what its worker waits on: dropped when that has been dealt with.
+type Handed<T> = (PyResult<Finished<T>>, SyncSender<()>);
 
 /// Serves the listener until every worker has hung up. Takes the receiver along when it leaves: workers that wait for their
 /// result to be dealt with are let go.
@@ -115,7 +110,7 @@ fn attend<L: Listener>(
     loop {
         match receiver.recv_timeout(next.saturating_duration_since(Instant::now())) {
             Ok((finished, taken)) => {
-                Python::attach(|py| listener.done(py, finished))?;
+                Python::attach(|py| listener.done(py, finished?))?;
                 drop(taken);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -124,10 +119,8 @@ fn attend<L: Listener>(
         if Instant::now() >= next {
             Python::attach(|py| {
                 py.check_signals()?;
-                for (index, slot) in slots.iter().enumerate() {
-                    if let Some(progress) = slot.news() {
-                        listener.progress(py, index, progress)?;
-                    }
+                for (index, progress) in slots.iter().filter_map(Slot::news) {
+                    listener.progress(py, index, progress)?;
                 }
                 Ok::<(), PyErr>(())
             })?;
@@ -136,7 +129,7 @@ fn attend<L: Listener>(
     }
 }
 
-/// Where a worker leaves word of how far its case is.
+/// Where a worker leaves word of its case and how far that is.
 struct Slot<'a> {
     stop: &'a AtomicBool,
     state: Mutex<State>,
@@ -144,8 +137,7 @@ struct Slot<'a> {
 
 #[derive(Default)]
 struct State {
-    begun: Option<Instant>,
-    ended: bool,
+    running: Option<(usize, Instant)>,
     news: bool,
     t: f64,
     s: f64,
@@ -158,32 +150,49 @@ impl Slot<'_> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn run<T>(&self, index: usize, work: &(impl Fn(usize, &dyn Control) -> Result<T> + Sync)) -> Finished<T> {
-        let begun = Instant::now();
-        self.state().begun = Some(begun);
-        let result = if self.stop() {
-            Err(Error::Interrupted.into())
-        } else {
-            match catch_unwind(AssertUnwindSafe(|| work(index, self))) {
-                Ok(result) => result.map_err(Failure::from),
-                Err(payload) => Err(Failure::Panic(message(payload.as_ref()))),
+    /// Takes cases, one after another, until there are no more or nobody listens.
+    fn serve<C, T>(
+        &self,
+        queue: &Mutex<impl Iterator<Item = (usize, PyResult<C>)>>,
+        work: &impl Fn(C, &dyn Control) -> Result<T>,
+        sender: &Sender<Handed<T>>,
+    ) {
+        while !self.stop() {
+            // Let go of before the case runs; an iterator that has panicked is not asked again.
+            let Ok(taken) = queue.lock().map(|mut queue| queue.next()) else { return };
+            let Some((index, case)) = taken else { return };
+            let finished = case.map(|case| self.run(index, || work(case, self)));
+            let (dealt, wait) = sync_channel::<()>(0);
+            if sender.send((finished, dealt)).is_err() {
+                return; // an exception: the result is not wanted any more
             }
+            // Until the listener has dealt with it and lets go of `dealt`: no more than `jobs` results wait in memory, and
+            // `jobs` threads are all that works.
+            let _ = wait.recv();
+        }
+    }
+
+    fn run<T>(&self, index: usize, work: impl FnOnce() -> Result<T>) -> Finished<T> {
+        let begun = Instant::now();
+        *self.state() = State { running: Some((index, begun)), ..State::default() };
+        let result = match catch_unwind(AssertUnwindSafe(work)) {
+            Ok(result) => result.map_err(Failure::from),
+            Err(payload) => Err(Failure::Panic(message(payload.as_ref()))),
         };
-        self.state().ended = true;
+        self.state().running = None;
         Finished { index, result, wall_s: begun.elapsed().as_secs_f64() }
     }
 
-    /// How far the case is, when it has moved since the last question and is still on its way.
-    fn news(&self) -> Option<Progress> {
+    /// Which case is on its way and how far it is, when it has moved since the last question.
+    fn news(&self) -> Option<(usize, Progress)> {
         let mut state = self.state();
-        let begun = state.begun?;
-        if !state.news || state.ended {
+        let (index, begun) = state.running?;
+        if !std::mem::take(&mut state.news) {
             return None;
         }
-        state.news = false;
         let elapsed = begun.elapsed().as_secs_f64();
         let real_time_factor = if elapsed > 0.0 { state.t / elapsed } else { 0.0 };
-        Some(Progress { fraction: state.fraction, distance: state.s, real_time_factor })
+        Some((index, Progress { fraction: state.fraction, distance: state.s, real_time_factor }))
     }
 }
 

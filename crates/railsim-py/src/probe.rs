@@ -21,8 +21,8 @@ pub fn _run_probes(
     on_progress: Py<PyAny>,
     on_done: Py<PyAny>,
 ) -> PyResult<()> {
-    let work = |index: usize, control: &dyn Control| perform(&deeds[index], control);
-    enter(py, deeds.len(), jobs, work, &mut Callbacks { on_progress, on_done })
+    let work = |deed: String, control: &dyn Control| perform(&deed, control);
+    enter(py, deeds.into_iter().map(Ok), jobs, work, &mut Callbacks { on_progress, on_done })
 }
 
 fn perform(deed: &str, control: &dyn Control) -> Result<Outcome> {

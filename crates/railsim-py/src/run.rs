@@ -1,9 +1,11 @@
 //! Cases: checking, running, and what a run records.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
+use pyo3::types::PyIterator;
 use railsim::KeyPath;
 use railsim::analysis;
 use railsim::run::{Law, Outcome, Outside, simulate_controlled};
@@ -66,30 +68,28 @@ pub fn track_extremes(
     Ok(["lateral", "vertical", "cross_level", "gauge"].into_iter().zip(extremes).collect())
 }
 
-/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks. `laws` are control laws of the
-/// user's by the index of their case.
+/// Runs cases on `jobs` threads, begun in their order; results and progress go to the callbacks. `cases` may be any iterable of
+/// JSON, or of pairs of JSON and a control law of the user's: it is asked for the next one when a thread is free, on that thread.
 #[pyfunction]
-#[pyo3(signature = (cases, jobs, on_progress, on_done, tables=None, laws=None))]
+#[pyo3(signature = (cases, jobs, on_progress, on_done, tables=None))]
 pub fn run_cases(
     py: Python<'_>,
-    cases: Vec<String>,
+    cases: &Bound<'_, PyAny>,
     jobs: NonZeroUsize,
     on_progress: Py<PyAny>,
     on_done: Py<PyAny>,
     tables: Option<&Tables>,
-    laws: Option<HashMap<usize, PythonLaw>>,
 ) -> PyResult<()> {
     // A batch shares its tables whether the caller wants them afterwards or not.
     let tables = tables.map(|t| t.tables.clone()).unwrap_or_default();
-    let laws = laws.unwrap_or_default();
     enter(
         py,
-        cases.len(),
+        Texts(cases.try_iter()?.unbind()),
         jobs,
-        |index, control| {
-            let mut case = Case::from_json(&cases[index])?;
+        |(text, law): (PyBackedStr, Option<PythonLaw>), control| {
+            let mut case = Case::from_json(&text)?;
             case.tables = tables.clone();
-            let Some(law) = laws.get(&index) else { return analysis::run(&case, control) };
+            let Some(law) = law else { return analysis::run(&case, control) };
             let mut asked =
                 Asked { sample: &law.sample, period: case.run.drive.as_ref().map_or(0.0, |d| d.period) };
             let (channels, outputs) = (law.channels.clone(), law.outputs.clone());
@@ -111,6 +111,25 @@ pub struct PythonLaw {
     outputs: Vec<String>,
     #[pyo3(item)]
     sample: Py<PyAny>,
+}
+
+/// What a Python iterator gives: a case, or a case with its control law.
+struct Texts(Py<PyIterator>);
+
+impl Iterator for Texts {
+    type Item = PyResult<(PyBackedStr, Option<PythonLaw>)>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        Python::attach(|py| {
+            self.0.bind(py).clone().next().map(|item| {
+                let item = item?;
+                match item.extract() {
+                    Ok((text, law)) => Ok((text, Some(law))),
+                    Err(_) => Ok((item.extract()?, None)),
+                }
+            })
+        })
+    }
 }
 
 /// Takes the GIL for as long as the function answers.

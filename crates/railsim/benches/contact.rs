@@ -36,9 +36,13 @@ fn contact(criterion: &mut Criterion) {
     group.bench_function("fastsim 10x10, full slip, twelve patches", |b| {
         b.iter(|| law.forces(black_box(&cases), &mut forces));
     });
+    let polach = CreepLaw::Polach(Polach { k_a: 0.6, k_s: 0.15 });
+    group.bench_function("polach, twelve patches", |b| {
+        b.iter(|| polach.forces(black_box(&cases), &mut forces));
+    });
     group.throughput(Throughput::Elements(1));
     for (name, law) in [
-        ("polach", CreepLaw::Polach(Polach { k_a: 0.6, k_s: 0.15 })),
+        ("polach", polach),
         ("kalker linear", CreepLaw::KalkerLinear(KalkerLinear {})),
         ("shen-hedrick-elkins", CreepLaw::ShenHedrickElkins(ShenHedrickElkins {})),
         ("vermeulen-johnson", CreepLaw::VermeulenJohnson(VermeulenJohnson::default())),

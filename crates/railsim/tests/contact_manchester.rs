@@ -1,11 +1,15 @@
 //! The Manchester contact benchmark, case, against CONTACT: positions, angles, approach, forces; by direct search and by the table.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod common;
+
 use railsim::KeyPath;
 use railsim::contact::creep::{CreepForce, CreepLaw, Creepage, Fastsim, Patch as Ellipse};
 use railsim::contact::geometry_table::{ContactPoint, GeometryTable, MAX_CONTACTS, Placement};
 use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use railsim::contact::search::{Patch, Pose, RailShift, Side};
+use railsim::dynamics::compile::geometry_table;
+use serde_json::{Value, json};
 
 const G: f64 = 82e9;
 const MU: f64 = 0.3;
@@ -323,16 +327,42 @@ fn direct_search_under_load() {
     assert!(within[0] >= 20 && within[1] >= 18 && within[2] == 21 && within[3] >= 19);
 }
 
-/// The table averages at one interpenetration, [`Placement::penetration_under`] the 10 kN of this case (12 um); beside it at the default, which is that of 40 kN.
+/// The case's wheelset, 20 kN on two wheels, as a vehicle of its own.
+fn wheelset_case() -> Value {
+    let mut value = common::coco134();
+    let mut vehicle = common::read_toml("vehicles/suspended_wheelset.toml");
+    vehicle["parameters"]["wheelset"]["mass"] = json!(2.0 * LOAD / 9.81);
+    vehicle["contact"]["youngs_modulus"] = json!(PLACEMENT.youngs_modulus);
+    value["vehicle"] = vehicle;
+    value["condition"] = json!("textbook");
+    for (key, number) in [("gauge_point_depth", 0.014), ("rail_inclination", 0.025)] {
+        value["track"][key] = json!(number);
+    }
+    value["track"]["rail_profile"] = json!("uic60");
+    value["run"]["wheel_profile"] = json!("s1002");
+    value["run"]["gravity"] = json!(9.81);
+    let points: Vec<[f64; 2]> = uic60().iter().map(|p| p.map(|x| 1e3 * x)).collect();
+    value["profiles"] =
+        json!({ "s1002": common::profile("s1002", "wheel"), "uic60": { "kind": "rail", "points": points } });
+    value
+}
+
+/// The table as a run of this wheelset has it, with nothing said of its averages: they are of the static wheel load.
 #[test]
 fn table_under_load() {
-    let (wheel, rail) = profiles();
-    let penetration = PLACEMENT.penetration_under(LOAD);
-    println!("penetration {:.2} um", 1e6 * penetration);
-    let table = GeometryTable::build_at(&wheel, &rail, &PLACEMENT, penetration).unwrap();
+    let table = geometry_table(&common::case(&wheelset_case())).unwrap();
     let within = judge("table", |row| by_table(&table, row));
     assert!(within[0] >= 20 && within[1] >= 19 && within[2] == 21 && within[3] == 21);
-    let table = GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap();
-    let within = judge("table at the default of 30 um", |row| by_table(&table, row));
-    println!("at the default: {within:?}");
+}
+
+/// Averaged over the patch of another load, four times this one, fewer rows are met: the load is part of a table.
+#[test]
+fn averages_are_of_the_load_that_is_asked_for() {
+    let mut value = wheelset_case();
+    value["vehicle"]["contact"]["averaging_load"] = json!(4.0 * LOAD);
+    let table = geometry_table(&common::case(&value)).unwrap();
+    let (wheel, rail) = profiles();
+    assert_eq!(*table, GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap());
+    let within = judge("table of 40 kN", |row| by_table(&table, row));
+    assert!(within[0] < 20 && within[1] < 18);
 }

@@ -25,7 +25,12 @@ const PLACEMENT: Placement = Placement {
 };
 
 fn pair(gauge: f64) -> Pair {
-    Pair { wheel: vec![[0.0, 0.0]], rail: vec![[0.0, 0.0]], placement: Placement { gauge, ..PLACEMENT } }
+    Pair {
+        wheel: vec![[0.0, 0.0]],
+        rail: vec![[0.0, 0.0]],
+        placement: Placement { gauge, ..PLACEMENT },
+        penetration: 30e-6,
+    }
 }
 
 fn table() -> GeometryTable {

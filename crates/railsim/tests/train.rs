@@ -4,7 +4,7 @@
 
 use railsim::KeyPath;
 use railsim::equipment::effort::davis;
-use railsim::equipment::train::{WAGON, Wagons};
+use railsim::equipment::train::{Mass, OnMass, WAGON, Wagons};
 use railsim::integrator::{Integrator, Stepper, System};
 use railsim::schema::drive::Train;
 use railsim::track::{Layout, Segment};
@@ -19,6 +19,10 @@ struct Line {
     lead: f64,
     hauls: f64,
     drawbar: f64,
+    /// Share of the wagons' brake force.
+    brake: f64,
+    /// Effort of each mass, N.
+    efforts: Vec<f64>,
 }
 
 impl System for Line {
@@ -27,10 +31,12 @@ impl System for Line {
     }
 
     fn rhs(&mut self, _t: f64, x: &[f64], dx: &mut [f64]) {
-        let pull = self.wagons.rates(&self.layout, [x[0], x[1]], |_| 0.0, &x[2..], &mut dx[2..]);
+        let leads = [[x[0], x[1]]; 2];
+        let on = |i: usize| OnMass { brake: self.brake, effort: self.efforts.get(i).copied().unwrap_or(0.0) };
+        let [front, pull] = self.wagons.rates(&self.layout, leads, on, &x[2..], &mut dx[2..]);
         self.drawbar = pull;
         dx[0] = x[1];
-        dx[1] = (self.hauls - pull) / self.lead - G * self.layout.gradient(x[0]).sin();
+        dx[1] = (self.hauls + front - pull) / self.lead - G * self.layout.gradient(x[0]).sin();
     }
 }
 
@@ -40,14 +46,15 @@ impl Line {
         let segments: Vec<Segment> = serde_json::from_value(segments.clone()).unwrap();
         let length = segments.iter().map(Segment::length).sum();
         let layout = Layout::new(&segments, length, &KeyPath::of("track.layout")).unwrap();
-        Self { wagons: Wagons { written, gravity: G }, layout, lead: 134e3, hauls: 0.0, drawbar: 0.0 }
+        let wagons = Wagons::new(written, G);
+        Self { wagons, layout, lead: 134e3, hauls: 0.0, drawbar: 0.0, brake: 0.0, efforts: Vec::new() }
     }
 
     /// Everything at `speed`, drawn out behind the leading mass at `place`.
     fn start(&self, place: f64, speed: f64) -> Vec<f64> {
         let mut x = vec![0.0; self.size()];
         (x[0], x[1]) = (place, speed);
-        self.wagons.place(place, speed, &mut x[2..]);
+        self.wagons.place([place; 2], speed, &mut x[2..]);
         x
     }
 
@@ -63,12 +70,12 @@ impl Line {
         let height = -self.layout.frame(x[0]).r_IT.z;
         0.5 * self.lead * x[1] * x[1]
             + self.lead * G * height
-            + self.wagons.energy(&self.layout, [x[0], x[1]], &x[2..])
+            + self.wagons.energy(&self.layout, [[x[0], x[1]]; 2], &x[2..])
     }
 
     fn momentum(&self, x: &[f64]) -> f64 {
-        let inertia = self.wagons.written.mass + self.wagons.written.rotary_mass;
-        self.lead * x[1] + x[2..].chunks_exact(WAGON).map(|w| inertia * w[1]).sum::<f64>()
+        let own = |(w, m): (&[f64], &Mass)| (m.mass + m.rotary_mass) * w[1];
+        self.lead * x[1] + x[2..].chunks_exact(WAGON).zip(&self.wagons.masses).map(own).sum::<f64>()
     }
 }
 
@@ -108,7 +115,7 @@ fn steady_drawbar_force_is_weight_and_resistance() {
     let mut x = line.start(1000.0, 10.0);
     // What makes the whole of it keep its speed, by hand; the leading mass has no resistance of its own here.
     let slope = grade.atan().sin();
-    let by_hand = 10.0 * (90e3 * G * slope + davis(90e3, 10.0));
+    let by_hand = 10.0 * (90e3 * G * slope + davis(90e3, 1.0, 10.0));
     line.hauls = by_hand + line.lead * G * slope;
     line.run(&mut x, 60.0);
     println!("drawbar {:.1} N, by hand {by_hand:.1} N, v {:.5} m/s", line.drawbar, x[1]);
@@ -135,11 +142,63 @@ fn a_run_in_keeps_momentum_and_ends_at_the_common_speed() {
         "largest push {:.0} kN, speeds {:.5} .. {:.5}, common {common:.5} m/s",
         -least / 1e3,
         x[1],
-        x[x.len() - 2]
+        x[x.len() - WAGON + 1]
     );
     assert!((line.momentum(&x) - before).abs() < 1e-9 * before.abs());
     let spread = x[2..].chunks_exact(WAGON).map(|w| (w[1] - common).abs()).fold(0.0, f64::max);
     assert!(spread < 0.05 * common.abs(), "{spread}");
+}
+
+/// Several locomotives: the train accelerates as one mass with all efforts, and each coupling carries what the masses beyond it need.
+#[test]
+fn efforts_along_the_train_add_up_and_share_the_coupling_forces() {
+    let train = json!({
+        "wagons": 10, "ahead": 3, "mass": 60e3, "length": 15.0, "resistance": false,
+        "coupler": { "stiffness": 1e7, "damping": 1e6 },
+        "locomotives": [{ "at": 1, "mass": 120e3, "rotary_mass": 20e3 }, { "at": 7, "mass": 120e3 }]
+    });
+    let mut line = Line::new(train, &level(5000.0));
+    line.efforts = vec![0.0; 10];
+    (line.efforts[0], line.efforts[6], line.hauls) = (200e3, 150e3, 100e3);
+    let mut x = line.start(1000.0, 5.0);
+    line.run(&mut x, 40.0);
+    let mut dx = vec![0.0; x.len()];
+    line.rhs(0.0, &x, &mut dx);
+    let whole = line.lead + 140e3 + 120e3 + 8.0 * 60e3;
+    let a = 450e3 / whole;
+    // Ahead of the leading mass 260 t want `a` and get 200 kN from their own locomotive; behind it 480 t less 150 kN.
+    let (front, rear) = (200e3 - 260e3 * a, (6.0 * 60e3 + 120e3) * a - 150e3);
+    let leads = [[x[0], x[1]]; 2];
+    let found = [2, 3].map(|i| line.wagons.force(leads, &x[2..], i));
+    println!(
+        "a {:.5} by hand {a:.5} m/s2; front {:.0} by hand {front:.0} N, rear {:.0} by hand {rear:.0} N",
+        dx[1], found[0], found[1]
+    );
+    assert!((dx[1] - a).abs() < 1e-4 * a);
+    assert!((found[0] - front).abs() < 1e-3 * front && (found[1] - rear).abs() < 1e-3 * rear);
+}
+
+/// A braked train stands on a gradient: what holds it is friction, not a slow slide. One wagon's blocks carry its weight along it.
+#[test]
+fn a_hundred_braked_wagons_hold_on_a_gradient_up_to_their_friction() {
+    let slope = 1.0 / 40.0;
+    let need = 80e3 * G * f64::atan(slope).sin();
+    for (force, wagons, holds) in [(1.2 * need, 100, true), (0.97 * need, 10, false)] {
+        let train = json!({
+            "wagons": wagons, "mass": 80e3, "length": 15.0, "resistance": false, "brake_force": force
+        });
+        let mut line = Line::new(train, &json!([{ "kind": "tangent", "length": 9000.0, "gradient": slope }]));
+        line.brake = 1.0;
+        line.hauls = 134e3 * need / 80e3;
+        let mut x = line.start(5000.0, 0.0);
+        line.run(&mut x, 8.0);
+        let before: Vec<f64> = x[2..].iter().step_by(WAGON).copied().collect();
+        line.run(&mut x, 8.0);
+        let after = x[2..].iter().step_by(WAGON);
+        let crept = after.zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("blocks {force:.0} of {need:.0} N: {crept:.2e} m in 8 s");
+        assert!(if holds { crept < 1e-5 } else { crept > 0.3 }, "{force}: {crept}");
+    }
 }
 
 /// A closed cycle of draft gear loses what its friction takes: `4 friction x mean force x travel` of a slow triangle.

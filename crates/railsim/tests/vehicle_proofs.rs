@@ -338,7 +338,7 @@ fn a_step_beyond_the_stability_limit_is_refused_by_name() {
 #[test]
 fn a_wheelset_that_follows_its_rails_does_not_creep() {
     use railsim::body::{Kinematics, steady_speeds};
-    use railsim::contact::creepage::{TrackMotion, place, rail_pose};
+    use railsim::contact::creepage::{TrackMotion, place, rail_pose, track_roll};
     use railsim::contact::geometry_table::ContactPoint;
     use railsim::track::Deviation;
     let (radius, half, speed) = (0.5335, 0.75, 30.0);
@@ -360,7 +360,7 @@ fn a_wheelset_that_follows_its_rails_does_not_creep() {
         let w_T = k.R_TB * k.w_B;
         for sigma in [-1.0, 1.0] {
             let still = TrackMotion::default();
-            let rail = rail_pose(sigma, half, &dev, &still, speed);
+            let rail = rail_pose(sigma, half, &dev, &still, track_roll(&dev, 0.0).sin_cos(), speed);
             let placed = place(sigma, &contact, &rail, radius, &q, &k, &w_T, &still, speed);
             let c = placed.creepage;
             // Second order in slopes of 2e-3, grown by tan(1.2 rad) = 2.6: a hundred times smaller than the slopes.

@@ -417,7 +417,10 @@ def judge(
         return _verdict(criterion, index, label, case_hash, tuple(names), Outcome.ERROR, message=message)
     name, reading = min(readings, key=lambda entry: _goodness(criterion, entry[1].value))
     outcome = Outcome.PASS if criterion.passes(reading.value) else Outcome.FAIL
-    return _verdict(criterion, index, label, case_hash, tuple(names), outcome, name, reading)
+    verdict = _verdict(criterion, index, label, case_hash, tuple(names), outcome, name, reading)
+    rows = signals.counted(frame.columns)
+    # rows of an analysis are no moments: the number of the row says where
+    return verdict if rows is None else replace(verdict, at={rows: reading.t})
 
 
 def _goodness(criterion: Criterion, value: float) -> float:

@@ -17,6 +17,7 @@ UNITS: dict[str, tuple[str, float]] = {
     "N/m": ("force per length", 1.0),
     "Pa": ("pressure", 1.0),
     "W": ("power", 1.0),
+    "deg": ("angle", 0.017453292519943295),
     "deg/s": ("angular velocity", 0.017453292519943295),
     "g": ("acceleration", STANDARD_GRAVITY),
     "kN": ("force", 1e3),

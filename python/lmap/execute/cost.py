@@ -26,6 +26,8 @@ def estimate(case: Case) -> float:
     match run.get("kind", "time"):
         case "time":
             seconds = _ratio(track.get("length"), run.get("speed"))
+            until = _table(_table(run.get("drive")).get("until"))
+            seconds = min(seconds, _number(until.get("time"), seconds))
             return _START + seconds * _per_second(run, wheelsets)
         case "critical_speed":
             return _START + _search(run, wheelsets)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import heapq
+import itertools
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import polars as pl
 
@@ -74,80 +76,133 @@ def run_cases(
     *,
     jobs: int | None = None,
     progress: Progress | None = None,
-    names: Sequence[str] | None = None,
     store: Store | None = None,
-    known: int = 0,
-    heard: Callable[[str, CaseOutcome], None] | None = None,
 ) -> list[CaseOutcome]:
     """Runs cases on `jobs` threads, the longest first; outcomes stand in the order of the cases.
 
     Each distinct case runs once. A case that cannot run becomes an outcome with its message; Ctrl-C raises
     `KeyboardInterrupt`. With a `store` every frame goes there as soon as it is there, but for those of control laws of
-    the user's, which are never kept. `heard(hash, outcome)` is called as cases end, on the calling thread; `names` are
-    shown while they run (by default their labels), `known` says how many more there are that need no run.
+    the user's, which are never kept.
     """
-    shown = dict(zip((case.hash for case in cases), names or [case.label for case in cases], strict=True))
-    distinct = list({case.hash: case for case in cases}.values())
-    if not distinct:
-        return []
-    costs = {case.hash: estimate(case) for case in distinct}
-    distinct.sort(key=lambda case: -costs[case.hash])
-    threads = max(1, min(jobs or default_jobs(), len(distinct)))
-    outcomes: list[CaseOutcome | None] = [None] * len(distinct)
-    begun: list[float | None] = [None] * len(distinct)
+    distinct = {case.hash: case for case in cases}
+    outcomes: dict[str, CaseOutcome] = {}
+    queue = Queue(Named(case, case.label) for case in distinct.values())
+    run_queue(queue, jobs=jobs, progress=progress, store=store, heard=outcomes.__setitem__)
+    missing = CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
+    return [outcomes.get(case.hash, missing) for case in cases]
+
+
+class Named(NamedTuple):
+    """A case and what progress calls it."""
+
+    case: Case
+    name: str
+
+
+class Queue:
+    """Cases in the order in which they begin: the longest of those at hand.
+
+    Without `ahead` all are at hand from the start. With it so many are, and the next is taken from `cases` when a
+    thread is free: threads share the work of making them too. `about` says how many there will be, as far as is known.
+    """
+
+    def __init__(self, cases: Iterable[Named], *, ahead: int | None = None, about: int = 0) -> None:
+        self._left = iter(cases)
+        self._ahead, self._about = ahead, about
+        self._heap: list[tuple[float, int, Named]] = []
+        self._taken = itertools.count()
+        self.entries: list[Entry] = []
+        """Of the cases that have been handed out, in that order, and without `ahead` of all."""
+        self.handed: list[Case] = []
+        """What has been handed out."""
+        self._laws = contextlib.ExitStack()
+        self._fill()
+        if ahead is None:
+            self.entries = [_entry(named, -cost) for cost, _, named in sorted(self._heap)]
+
+    @property
+    def about(self) -> int:
+        """How many cases there will be."""
+        return max(self._about, len(self.handed) + len(self._heap))
+
+    def __enter__(self) -> None:
+        self._laws.__enter__()
+
+    def __exit__(self, *error: object) -> None:
+        """Ends the control laws that were begun."""
+        self._laws.close()
+
+    def __iter__(self) -> Iterator[str | tuple[str, dict[str, Any]]]:
+        """Each case as the core reads it, with its control law where it has one, begun for this run."""
+        while self._heap:
+            cost, _, named = heapq.heappop(self._heap)
+            self.handed.append(named.case)
+            if self._ahead is not None:
+                self.entries.append(_entry(named, -cost))
+            control = named.case.control
+            yield named.case.core_json if control is None else (named.case.core_json, self._begin(control))
+            self._fill()
+
+    def _begin(self, control: Control) -> dict[str, Any]:
+        running = control.start()
+        self._laws.callback(running.close)
+        return {
+            "name": control.name,
+            "channels": control.channels,
+            "outputs": control.outputs,
+            "sample": running.sample,
+        }
+
+    def _fill(self) -> None:
+        while self._ahead is None or len(self._heap) < self._ahead:
+            named = next(self._left, None)
+            if named is None:
+                self._about = 0  # now it is known
+                return
+            heapq.heappush(self._heap, (-estimate(named.case), next(self._taken), named))
+
+
+def _entry(named: Named, cost: float) -> Entry:
+    return Entry(named.name, _length(named.case), cost)
+
+
+def run_queue(
+    queue: Queue,
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    store: Store | None = None,
+    known: int = 0,
+    heard: Callable[[str, CaseOutcome], None],
+) -> None:
+    """Runs what a queue hands out; `heard(hash, outcome)` is called as cases end, on the calling thread.
+
+    `known` says how many more there are that need no run.
+    """
+    if not queue.about:
+        return
+    threads = max(1, min(jobs or default_jobs(), queue.about))
+    begun: dict[int, float] = {}
     hears = Progress() if progress is None else progress
     railsim = toml.core()
     start = time.perf_counter()
 
     def on_progress(index: int, fraction: float, distance: float, factor: float) -> None:
-        if begun[index] is None:
-            begun[index] = time.perf_counter()
+        begun.setdefault(index, time.perf_counter())
         hears.update(index, fraction, distance, factor)
 
     def on_done(index: int, result: Any) -> None:
-        wall_s = time.perf_counter() - (begun[index] or start)
-        outcome = _outcome(result, wall_s, railsim, distinct[index].control)
-        case_hash = distinct[index].hash
-        if store is not None and distinct[index].control is None:
-            outcome = store.keep(case_hash, outcome)
-        outcomes[index] = outcome
+        wall_s = time.perf_counter() - begun.pop(index, start)
+        case = queue.handed[index]
+        outcome = _outcome(result, wall_s, railsim, case.control)
+        if store is not None and case.control is None:
+            outcome = store.keep(case.hash, outcome)
         hears.done(index, outcome.wall_s, outcome.trouble)
-        if heard is not None:
-            heard(case_hash, outcome)
+        heard(case.hash, outcome)
 
-    entries = [Entry(shown[case.hash], _length(case), costs[case.hash]) for case in distinct]
-    with hears, _laws(distinct) as laws:
-        hears.begin(entries, threads, known)
-        cores = [case.core_json for case in distinct]
-        railsim.run_cases(cores, threads, on_progress, on_done, toml.tables(), laws)
-    by_hash = {
-        case.hash: outcome or CaseOutcome(None, {"kind": "error", "message": "the core gave no result"})
-        for case, outcome in zip(distinct, outcomes, strict=True)
-    }
-    return [by_hash[case.hash] for case in cases]
-
-
-@contextlib.contextmanager
-def _laws(cases: Sequence[Case]) -> Iterator[dict[int, Any]]:
-    """Control laws as the core asks them, by the index of their case, each for one run.
-
-    Begun here, on the calling thread, before any other runs: an FMU's library is loaded from its own folder, and the
-    working folder is the whole process's.
-    """
-    with contextlib.ExitStack() as stack:
-        laws = {}
-        for index, case in enumerate(cases):
-            if case.control is None:
-                continue
-            running = case.control.start()
-            stack.callback(running.close)
-            laws[index] = {
-                "name": case.control.name,
-                "channels": case.control.channels,
-                "outputs": case.control.outputs,
-                "sample": running.sample,
-            }
-        yield laws
+    with hears, queue:
+        hears.begin(queue.entries, threads, known, queue.about)
+        railsim.run_cases(queue, threads, on_progress, on_done, toml.tables())
 
 
 def _outcome(result: Any, wall_s: float, railsim: ModuleType, control: Control | None) -> CaseOutcome:

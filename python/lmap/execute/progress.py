@@ -31,8 +31,11 @@ class Entry(NamedTuple):
 class Progress:
     """Hears how cases go; this one says nothing."""
 
-    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0) -> None:
-        """Cases are about to run on `jobs` threads; `known` more need no run."""
+    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0, about: int = 0) -> None:
+        """Cases are about to run on `jobs` threads; `known` more need no run.
+
+        Where `about` so many will run, `cases` grows while they do: a case is in it before anything is heard of it.
+        """
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
         """A case has come so far (part of the run, m) at so many times real time."""
@@ -55,26 +58,36 @@ class Progress:
 class Suite:
     """How far all cases together are, by their costs."""
 
-    def __init__(self, cases: Sequence[Entry]) -> None:
-        self._costs = [max(case.cost, 1e-9) for case in cases]
-        self._fractions = [0.0] * len(cases)
+    def __init__(self, cases: Sequence[Entry], about: int = 0) -> None:
+        self._cases, self._about = cases, about
+        self._on_way: dict[int, float] = {}
+        self._done = 0.0
         self._ended = 0
         self._start = time.perf_counter()
 
+    @property
+    def total(self) -> int:
+        """Cases in all."""
+        return max(self._about, len(self._cases))
+
     def update(self, index: int, fraction: float) -> None:
         """A case has come so far."""
-        self._fractions[index] = min(max(fraction, 0.0), 1.0)
+        self._on_way[index] = min(max(fraction, 0.0), 1.0)
 
     def done(self, index: int) -> None:
         """A case has ended."""
-        self._fractions[index] = 1.0
+        self._on_way.pop(index, None)
+        self._done += _cost(self._cases[index])
         self._ended += 1
 
     @property
     def fraction(self) -> float:
-        """Share of the work that is done."""
-        done = sum(cost * part for cost, part in zip(self._costs, self._fractions, strict=True))
-        return done / sum(self._costs)
+        """Share of the work that is done; cases that are not made yet count as the mean of the others."""
+        known = [_cost(case) for case in self._cases]
+        if not known:
+            return 0.0
+        on_way = sum(known[index] * part for index, part in self._on_way.items())
+        return (self._done + on_way) * len(known) / (sum(known) * self.total)
 
     @property
     def remaining_s(self) -> float | None:
@@ -87,12 +100,16 @@ class Suite:
     @property
     def text(self) -> str:
         """`3 of 40 cases, 25 s left`."""
-        total = len(self._costs)
+        total = self.total
         text = f"{self._ended} of {total} {'case' if total == 1 else 'cases'}"
         left = self.remaining_s
         if left is None or self._ended == total:
             return text
         return f"{text}, {_duration(left)} left"
+
+
+def _cost(case: Entry) -> float:
+    return max(case.cost, 1e-9)
 
 
 def _duration(seconds: float) -> str:
@@ -104,24 +121,24 @@ class Lines(Progress):
     """A few plain lines per case, for logs; one, when it ends, where there are many cases."""
 
     def __init__(self) -> None:
-        self._cases: list[Entry] = []
-        self._said: list[int] = []
+        self._cases: Sequence[Entry] = []
+        self._said: dict[int, int] = {}
         self._suite = Suite([])
 
-    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0) -> None:
+    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0, about: int = 0) -> None:
         """Says how many there are."""
-        self._cases = list(cases)
-        self._said = [0] * len(cases)
-        self._suite = Suite(cases)
-        noun = "case" if len(cases) == 1 else "cases"
+        self._cases = cases
+        self._said = {}
+        self._suite = Suite(cases, about)
+        noun = "case" if self._suite.total == 1 else "cases"
         found = f", {known} known from before" if known else ""
-        self._say(f"running {len(cases)} {noun} on {jobs} thread{'' if jobs == 1 else 's'}{found}")
+        self._say(f"running {self._suite.total} {noun} on {jobs} thread{'' if jobs == 1 else 's'}{found}")
 
     def update(self, index: int, fraction: float, distance: float, factor: float) -> None:
         """Says something every quarter of the way."""
         self._suite.update(index, fraction)
         step = int(fraction * LINES_PER_CASE)
-        if len(self._cases) <= FEW and self._said[index] < step < LINES_PER_CASE:
+        if self._suite.total <= FEW and self._said.get(index, 0) < step < LINES_PER_CASE:
             self._said[index] = step
             case = self._cases[index]
             self._say(f"{case.name}: {_distance(distance, case.length)}, {factor:.1f} times real time")
@@ -129,7 +146,7 @@ class Lines(Progress):
     def done(self, index: int, wall_s: float, trouble: str | None) -> None:
         """Says how it ended."""
         self._suite.done(index)
-        many = f"; {self._suite.text}" if len(self._cases) > FEW else ""
+        many = f"; {self._suite.text}" if self._suite.total > FEW else ""
         self._say(f"{self._cases[index].name}: {trouble or 'done'} ({wall_s:.1f} s){many}")
 
     @staticmethod
@@ -145,10 +162,10 @@ class Bars(Progress):
         self._bars: RichBars | None = None
         self._all: TaskID | None = None
         self._tasks: dict[int, TaskID] = {}
-        self._cases: list[Entry] = []
+        self._cases: Sequence[Entry] = []
         self._suite = Suite([])
 
-    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0) -> None:
+    def begin(self, cases: Sequence[Entry], jobs: int, known: int = 0, about: int = 0) -> None:
         """Draws the bar of the whole."""
         from rich.console import Console
         from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
@@ -162,8 +179,8 @@ class Bars(Progress):
             TimeElapsedColumn(),
             console=Console(stderr=True),
         )
-        self._cases = list(cases)
-        self._suite = Suite(cases)
+        self._cases = cases
+        self._suite = Suite(cases, about)
         found = f", {known} known from before" if known else ""
         self._all = self._bars.add_task("all", total=1.0, state=f"{self._suite.text}{found}")
         self._bars.start()

@@ -15,7 +15,6 @@ import hashlib
 import json
 import os
 import shutil
-import sys
 import tempfile
 import time
 import weakref
@@ -58,14 +57,10 @@ class LostFrame(LmapError):
 
 def default_folder() -> Path:
     """`LMAP_CACHE_DIR`, else the user's cache folder as the platform has it."""
+    import platformdirs
+
     given = os.environ.get(FOLDER_VARIABLE)
-    if given:
-        return Path(given)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "lmap" / "cache"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "lmap"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "lmap"
+    return Path(given) if given else platformdirs.user_cache_path("lmap", appauthor=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -212,6 +212,16 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
         for label, row in quantities.items()
         if label != STANDING
     ]
+    reach = [1e3 * float(loop["angle"].min()), 1e3 * float(loop["angle"].max())]  # type: ignore[arg-type]
+    share = next((m / x for m, x in loop.select("moment", "x_factor").iter_rows() if x > 0.0), None)
+    curves += [
+        DrawnCurve(
+            name=f"X factor {one.max:g}", x=reach, y=[side * one.max * abs(share) / 1e3] * 2, role="limit"
+        )
+        for one in spec.criterion
+        if share is not None and one.max is not None and one.applies_to(STANDING)
+        for side in (-1.0, 1.0)
+    ]
     return [
         Drawing(
             title="Rotation of the leading bogie",

@@ -6,21 +6,23 @@ bogie. Label `formula`, one row, column `unloading` (of the static wheel load) a
 
 Then the same forces on both ends of the car body, in balance, rolling slowly through that curve, step by step from
 nothing to the whole force: labels `draft` and `buff`, column `<axle>.<side>.unloading`. LMAP asks for time stepping
-only where the formula gives more than 90 %.
+only where the formula gives more than 90 %: `[[test.stepped]]`, a run along the spec's track between two equal
+neighbours, with the force of `[test]` in both couplers (`way`) or with what the train in its `run.train` gives.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from lmap.errors import InputProblem, JudgementProblem, Problem
 from lmap.formulas import coupler_angle, coupler_unloading
 from lmap.procedures.base import CaseFigures, at_rest, settings, unloading_units, with_unloading
-from lmap.spec.case import Case, VehicleData, build
+from lmap.procedures.couplers import ends
+from lmap.spec.case import Case, VehicleData, build, merged
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, DrawnCurve, Fact
 from lmap.view.model import Model, resolved
@@ -37,6 +39,20 @@ UNITS: Mapping[str, str] = {"unloading": "1", "lateral_force": "N"}
 REST = "at rest"
 
 
+class Stepped(BaseModel):
+    """`[[test.stepped]]`: one run in time."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    label: str = Field(min_length=1)
+    way: Literal["draft", "buff"] | None = None
+    """Which way the force of `[test]` acts in both couplers; without it they have what `run.train` gives."""
+    run: dict[str, Any] = Field(default_factory=dict)
+    """Laid over `[run]`."""
+    track: dict[str, Any] = Field(default_factory=dict)
+    """Laid over `[track]`."""
+
+
 class Settings(BaseModel):
     """`[test]`."""
 
@@ -48,16 +64,30 @@ class Settings(BaseModel):
     """Of the curve."""
     force: float = Field(gt=0.0, allow_inf_nan=False)
     """Along the couplers at both ends, N."""
-    ways: list[Literal["draft", "buff"]] = Field(min_length=1)
+    ways: list[Literal["draft", "buff"]] = Field(default_factory=list)
+    """Which ways are brought to balance in the curve."""
     wheels_that_share: int = Field(gt=0)
     """Wheels on one rail over which the formula shares what is lost at one end."""
+    shank: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
+    """From a coupler's pivot to its pulling face, m; only runs in time need it."""
+    build_up_s: float = Field(default=5.0, gt=0.0, allow_inf_nan=False)
+    """Time in which the force of `[test]` grows to its whole in a run in time."""
+    stepped: list[Stepped] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _something_to_do(self) -> Self:
+        if not self.ways and not self.stepped:
+            raise ValueError("ways or stepped, one of them at least")
+        if self.stepped and self.shank is None:
+            raise ValueError("shank, which runs in time need")
+        return self
 
 
 SETTINGS = Settings
 
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
-    """The vehicle at rest on level track, then a case for each way in which the couplers push."""
+    """The vehicle at rest on level track, a case for each way in which the couplers push, then the runs in time."""
     test, model = settings(spec, Settings), resolved(vehicle)
     [rest] = at_rest(spec, vehicle)
     speeds = spec.run.speeds
@@ -66,7 +96,8 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     length = float(spec.track["length"])
     curve = {"kind": "curve", "length": length, "radius": test.radius, "cant_mm": test.cant_mm}
     still = {key: value for key, value in rest.data["run"].items() if key != "load_steps"}
-    found = [build(label=REST, vehicle=vehicle, track=spec.track, run=still)]
+    level = {"layout": [{"kind": "tangent", "length": length}]}
+    found = [build(label=REST, vehicle=vehicle, track={**spec.track, **level}, run=still)]
     for way in dict.fromkeys(test.ways):
         run: dict[str, Any] = {
             **rest.data["run"],
@@ -75,27 +106,25 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
             "load": _loads(test, model, 1.0 if way == "draft" else -1.0),
         }
         found.append(build(label=way, vehicle=vehicle, track={**spec.track, "layout": [curve]}, run=run))
+    stepping = {**still, "kind": "time", "speed": speeds[0].resolve(vehicle.design_speed)}
+    for one in test.stepped:
+        run = merged({**stepping, "couplers": _couplers(test, one)}, one.run)
+        found.append(build(label=one.label, vehicle=vehicle, track=merged(spec.track, one.track), run=run))
     return found
 
 
-def _ends(model: Model) -> tuple[float, float]:
-    """Length over couplers and height of the couplers above rail, m."""
-    outline = model.outline
-    if outline is None:
-        found = f"{model.name} without [outline]"
-        raise InputProblem(
-            Problem(
-                key=("vehicle",),
-                found=found,
-                allowed="length_over_couplers and coupler_height in its [outline]",
-            )
-        )
-    return float(outline["length_over_couplers"]), float(outline["coupler_height"])
+def _couplers(test: Settings, one: Stepped) -> dict[str, Any]:
+    """`run.couplers`: between equal neighbours, with the force of `[test]` or without any beside the train's."""
+    if one.way is None:
+        return {"shank": test.shank}
+    force = test.force if one.way == "draft" else -test.force
+    course = [[0.0, 0.0], [test.build_up_s, force]]
+    return {"shank": test.shank, "front": course, "rear": course}
 
 
 def _loads(test: Settings, model: Model, sign: float) -> list[dict[str, Any]]:
     """Both couplers pull (+) or push: along the vehicle they cancel, across they add up, to the inside (pull)."""
-    length, height = _ends(model)
+    length, height = ends(model)
     across = 2.0 * test.force * math.sin(coupler_angle(length, test.radius))
     position = [0.0, 0.0, -height]
     path = [0.0, sign * across]
@@ -110,7 +139,7 @@ def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
 def quantities(
     spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
 ) -> Mapping[str, pl.DataFrame]:
-    """The formula's row, and the frames of both ways with unloading."""
+    """The formula's row, and the frames of all others with unloading."""
     import polars as pl
 
     test, model = settings(spec, Settings), resolved(vehicle)
@@ -122,7 +151,7 @@ def quantities(
     loads = [float(level[name][0]) for name in level.columns if name.endswith(".Q")]
     if not loads:
         raise JudgementProblem("the vehicle at rest has no wheel loads")
-    length, height = _ends(model)
+    length, height = ends(model)
     angle = coupler_angle(length, test.radius)
     lost = coupler_unloading(test.force, angle, height) / test.wheels_that_share
     formula = pl.DataFrame(
@@ -145,6 +174,9 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
     for label, frame in quantities.items():
         if label == "formula":
             continue
+        if "t" in frame.columns:
+            found.append(_along(label, frame))
+            continue
         share = [test.force * k / max(frame.height - 1, 1) / 1e3 for k in range(frame.height)]
         worst = [
             DrawnCurve(
@@ -164,6 +196,18 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
             )
         )
     return found
+
+
+def _along(label: str, frame: pl.DataFrame) -> Drawing:
+    """Unloading of every wheel of a run in time along the track."""
+    frame = frame.gather_every(max(1, frame.height // 500))
+    place = frame["s"].to_list()
+    curves = [
+        DrawnCurve(name=name.removesuffix(".unloading"), x=place, y=(100.0 * frame[name]).to_list())
+        for name in frame.columns
+        if name.endswith(".unloading")
+    ]
+    return Drawing(title=label, x_label="place (m)", y_label="wheel unloading (%)", curves=tuple(curves))
 
 
 def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:

@@ -212,12 +212,12 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
             equal_axes=True,
         )
     ]
-    for name, unit, scale in (("roll", "mrad", 1e3), ("lateral", "mm", 1e3)):
+    for name, shown, unit in (("roll", "roll", "mrad"), ("lateral", "lateral place", "mm")):
         loops = tuple(
             DrawnCurve(
                 name=label,
                 x=[1e3 * v for v in frame["tilt"].to_list()],
-                y=[scale * v for v in frame[name].to_list()],
+                y=[1e3 * v for v in frame[name].to_list()],
             )
             for label, frame in quantities.items()
             if frame.height > 1
@@ -225,9 +225,9 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
         if loops:
             found.append(
                 Drawing(
-                    title=f"Sway on the rig: {name} of the body against its axles",
+                    title=f"Sway on the rig: {shown} of the body against its axles",
                     x_label="cant (mm)",
-                    y_label=f"{name} ({unit})",
+                    y_label=f"{shown} ({unit})",
                     curves=loops,
                 )
             )

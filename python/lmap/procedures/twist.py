@@ -189,6 +189,11 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
             curves.append(
                 DrawnCurve(name=f"{leading}.{side}, average", x=x[inside], y=mean[inside], role="points")
             )
+        curves += [
+            DrawnCurve(name=f"limit {one.max:g} %", x=[min(x), max(x)], y=[one.max, one.max], role="limit")
+            for one in spec.criterion
+            if one.max is not None and one.unit == "%" and one.applies_to(loop)
+        ]
         found.append(
             Drawing(
                 title=f"Twist: {loop}",

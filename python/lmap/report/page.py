@@ -198,15 +198,9 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
         verdict=verdict,
         verdict_class=_class(verdict),
         signal=criterion.signal or NOTHING,
-        place=_place(criterion.at) if words.placed(criterion) else "",
+        place=words.place(criterion.at) if words.placed(criterion) else "",
         source=criterion.source,
     )
-
-
-def _place(at: Mapping[str, float] | None) -> str:
-    parts = {"t": "s", "s": "m"}
-    known = [(name, unit) for name, unit in parts.items() if at is not None and name in at]
-    return ", ".join(f"{name} = {number(at[name])} {unit}" for name, unit in known) if at is not None else ""
 
 
 def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:

@@ -44,7 +44,7 @@ def figures(case: CaseResult) -> RunFigures:
     factor = simulated / case.wall_s if simulated is not None and case.wall_s > 0.0 else None
     return RunFigures(
         case=case.label,
-        distance=_with(extent.distance, "m"),
+        distance=_with(None if simulated is None else extent.distance, "m"),
         simulated=_with(simulated, "s"),
         wall=_with(case.wall_s, "s", 3) if case.wall_s > 0.0 else NOTHING,
         real_time_factor=NOTHING if factor is None else number(factor, 3),

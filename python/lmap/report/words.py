@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from lmap.report.numbers import percent, signed
+from lmap.report.numbers import number, percent, signed
+from lmap.signals import COUNTED
 from lmap.verdict import Acceptance, CriterionVerdict, Outcome, SpecVerdict
 
 ASSUMED = "assumed"
@@ -28,6 +29,20 @@ WHOLE_RUN = frozenset({"mean", "mean_comfort", "median", "percentile", "rms", "v
 def placed(criterion: CriterionVerdict) -> bool:
     """Whether the value belongs to a place in the run."""
     return criterion.at is not None and not (criterion.chain and WHOLE_RUN & set(criterion.chain[-1]))
+
+
+def place(at: Mapping[str, float] | None) -> str:
+    """Where a value is: `t = 1.2 s, s = 40 m`, or the row of an analysis: `step 12`."""
+    known = {} if at is None else at
+    units = {"t": "s", "s": "m"}
+    moments = [f"{name} = {number(known[name])} {unit}" for name, unit in units.items() if name in known]
+    rows = [f"{name.replace('_', ' ')} {known[name]:.0f}" for name in COUNTED if name in known]
+    return ", ".join(moments + rows)
+
+
+def along(at: Mapping[str, float]) -> float | None:
+    """The same on the axis of a plot: time, or the number of a row."""
+    return next((at[name] for name in ("t", *COUNTED) if name in at), None)
 
 
 def verdict(criterion: CriterionVerdict) -> str:

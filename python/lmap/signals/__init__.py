@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lmap.signals.base import Filter, Joint, Link, Reading, Statistic, signal_of
+from lmap.signals.base import COUNTED, Filter, Joint, Link, Reading, Statistic, counted, signal_of
 from lmap.signals.comfort import MeanComfort, Sperling, VibrationTotal, Weight
 from lmap.signals.filters import Bandpass, BandpassDominant, Lowpass, MovingMean, RemoveMean, Section, Skip
 from lmap.signals.statistic import (
@@ -50,4 +50,15 @@ LINKS: tuple[type[Link], ...] = (
 
 BY_NAME: dict[str, type[Link]] = {link.name: link for link in LINKS}
 
-__all__ = ["BY_NAME", "LINKS", "Filter", "Joint", "Link", "Reading", "Statistic", "signal_of"]
+__all__ = [
+    "BY_NAME",
+    "COUNTED",
+    "LINKS",
+    "Filter",
+    "Joint",
+    "Link",
+    "Reading",
+    "Statistic",
+    "counted",
+    "signal_of",
+]

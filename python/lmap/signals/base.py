@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
@@ -111,6 +111,11 @@ COUNTED = ("step", "mode", "critical_speed")
 """A frame with one of these and without `t` is an analysis: its rows are counted."""
 
 
+def counted(columns: Collection[str]) -> str | None:
+    """What the rows of a frame with these columns count; none where they are moments of a run."""
+    return None if "t" in columns else next((name for name in COUNTED if name in columns), None)
+
+
 def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFrame:
     """The channel `name` of a frame as a signal; refuses what is missing, empty, no number or not finite.
 
@@ -119,7 +124,7 @@ def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFra
     """
     known = set(frame.columns)
     columns = {column: frame.get_column(column) for column in ("t", "s", name) if column in known}
-    if "t" not in known and any(column in known for column in COUNTED):
+    if counted(known) is not None:
         columns["t"] = pl.Series("t", range(frame.height), dtype=pl.Float64)
         columns.setdefault("s", pl.Series("s", [0.0] * frame.height, dtype=pl.Float64))
     for column in ("t", "s", name):

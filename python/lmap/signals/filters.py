@@ -250,10 +250,9 @@ class Skip(Filter):
 
     def apply(self, signal: pl.DataFrame) -> pl.DataFrame:
         """What comes after; nothing left is an error."""
-        rest = signal.filter(
-            pl.col("t") - pl.col("t").first() >= self.start_s,
-            pl.col("s") - pl.col("s").first() >= self.start_m,
-        )
-        if rest.is_empty():
+        t, s = (signal.get_column(name).to_numpy() for name in ("t", "s"))
+        # from the first sample on that is beyond both: what follows counts wherever the vehicle rolls, back too
+        beyond = (t - t[0] >= self.start_s) & (abs(s - s[0]) >= self.start_m)
+        if not beyond.any():
             raise JudgementProblem("nothing is left after the part that is skipped")
-        return rest
+        return signal.slice(int(beyond.argmax()))

@@ -32,7 +32,7 @@ pub(super) fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let mut own = Pneumatics::new(data, 0.0, drive, true);
     let mut rear = case.run.train.as_ref().map(|train| {
         let vehicle = case.vehicle.outline.as_ref().map_or(0.0, |o| o.length_over_couplers);
-        let distance = vehicle + f64::from(train.wagons) * train.length;
+        let distance = vehicle + f64::from(train.wagons - train.ahead.min(train.wagons)) * train.length;
         Pneumatics::new(data, distance, drive, false)
     });
     let mut table = Table::new(columns(case));

@@ -21,7 +21,8 @@ pub use pose::{Pose, Relative, Wrench};
 pub use rigid_body::RigidBody;
 pub use wheelset::Wheelset;
 
-use crate::math::{Mat3, Vec3, angle, rotation};
+use crate::math::angle::SinCos;
+use crate::math::{Mat3, Vec3, rotation};
 use crate::track::Frame;
 
 /// Coordinates of one body, in the order of the state.
@@ -83,16 +84,18 @@ impl Kinematics {
 
 /// `dq/dt` from the quasi-velocities, and the kinematics on the way, written into `k`.
 ///
-/// `spins` is true for a wheelset, whose axes carry yaw and roll but not its spin; `level` where the track frame is known
-/// to be inertial axes moved along x, which saves the turning.
+/// `turns` are sine and cosine of roll, pitch and yaw; `spins` is true for a wheelset, whose axes carry yaw and roll but not
+/// its spin; `level` where the track frame is known to be inertial axes moved along x, which saves the turning.
+#[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub(crate) fn kinematics(
-    q: &[f64],
-    u: &[f64],
+    q: &[f64; 6],
+    turns: [SinCos; 3],
+    u: &[f64; 6],
     frame: Frame,
     spins: bool,
     level: bool,
-    dq: &mut [f64],
+    dq: &mut [f64; 6],
     k: &mut Kinematics,
 ) {
     let (y, z) = (q[1], q[2]);
@@ -105,8 +108,7 @@ pub(crate) fn kinematics(
     dq[1] = v_T.y + s_dot * turn.x * z;
     dq[2] = v_T.z - s_dot * turn.x * y;
 
-    let (sin_phi, cos_phi) = angle::small(q[3]);
-    let (sin_psi, cos_psi) = angle::small(q[5]);
+    let [(sin_phi, cos_phi), (s, c), (sin_psi, cos_psi)] = turns;
     // Axle axes: Rz(psi) Rx(phi), written out.
     let R_TA = Mat3::new(
         cos_psi,
@@ -122,7 +124,6 @@ pub(crate) fn kinematics(
     let (R_TB, w_A) = if spins {
         (R_TA, w_B)
     } else {
-        let (s, c) = angle::small(q[4]);
         // R_TA Ry(theta): x and z columns turned into each other.
         let (x, z) = (R_TA.column(0), R_TA.column(2));
         let R_TB = Mat3::from_columns(&[c * x - s * z, R_TA.column(1).into(), s * x + c * z]);

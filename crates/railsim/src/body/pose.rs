@@ -48,6 +48,14 @@ impl Wrench {
     }
 }
 
+impl std::ops::AddAssign for Wrench {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        self.f += other.f;
+        self.m += other.m;
+    }
+}
+
 /// Motion of body B as seen from body A, in A's axes: all that a force between the two can depend on.
 #[derive(Debug, Clone, Copy)]
 pub struct Relative {

@@ -19,7 +19,7 @@ pub struct RigidBody {
 /// Linear part: `dv_T/dt = R_IT' F / m - w_T x v_T`. `wrench.f` holds all forces with weight, inertial axes; `level` as in
 /// `kinematics`.
 #[inline(always)]
-pub(crate) fn translate(k: &Kinematics, mass: f64, wrench: &Wrench, level: bool, du: &mut [f64]) {
+pub(crate) fn translate(k: &Kinematics, mass: f64, wrench: &Wrench, level: bool, du: &mut [f64; 6]) {
     let a = if level {
         wrench.f / mass
     } else {
@@ -30,7 +30,7 @@ pub(crate) fn translate(k: &Kinematics, mass: f64, wrench: &Wrench, level: bool,
 
 /// Rotational part in the body's axes: `I dw/dt + w_axes x (I w) = M`.
 #[inline(always)]
-pub(crate) fn rotate(k: &Kinematics, inertia: &Vec3, moment_B: &Vec3, du: &mut [f64]) {
+pub(crate) fn rotate(k: &Kinematics, inertia: &Vec3, moment_B: &Vec3, du: &mut [f64; 6]) {
     let h = inertia.component_mul(&k.w_B);
     let a = (moment_B - k.w_axes.cross(&h)).component_div(inertia);
     du[3..6].copy_from_slice(a.as_slice());

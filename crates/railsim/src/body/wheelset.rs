@@ -24,7 +24,7 @@ pub struct Wheelset {
 /// The axle boxes' axes turn with roll and yaw only, so their moment about the axle does work on yaw alone,
 /// through `d psi (0, sin phi, cos phi)`: virtual work turns `M_y` into `M_y tan(phi)` about z.
 #[inline(always)]
-pub(crate) fn rotate(k: &Kinematics, inertia: &Vec3, boxes: &Wrench, wheels_A: &Vec3, du: &mut [f64]) {
+pub(crate) fn rotate(k: &Kinematics, inertia: &Vec3, boxes: &Wrench, wheels_A: &Vec3, du: &mut [f64; 6]) {
     let m = k.pose.R.tr_mul(&boxes.m);
     let tan_phi = k.R_TB[(2, 1)] / k.R_TB[(2, 2)];
     let moment = Vec3::new(m.x, 0.0, m.z + m.y * tan_phi) + wheels_A;

@@ -54,12 +54,25 @@ pub struct RailPose {
     pub surface_velocity: [f64; 2],
 }
 
-/// Rail of one side: design position, irregularity and track mass.
+/// Roll of the track from its design position, rad: cross level and the roll `phi` of the track mass.
 #[inline(always)]
 #[must_use]
-pub fn rail_pose(sigma: f64, rail_y: f64, dev: &Deviation, track: &TrackMotion, s_dot: f64) -> RailPose {
-    let tilt = dev.cross_level / CROSS_LEVEL_BASE;
-    let roll = tilt + track.phi;
+pub fn track_roll(dev: &Deviation, phi: f64) -> f64 {
+    dev.cross_level / CROSS_LEVEL_BASE + phi
+}
+
+/// Rail of one side: design position, irregularity and track mass. `turn` are sine and cosine of [`track_roll`].
+#[inline(always)]
+#[must_use]
+pub fn rail_pose(
+    sigma: f64,
+    rail_y: f64,
+    dev: &Deviation,
+    track: &TrackMotion,
+    turn: SinCos,
+    s_dot: f64,
+) -> RailPose {
+    let roll = track_roll(dev, track.phi);
     let y = rail_y + 0.5 * dev.gauge;
     let slope = [
         0.5 * dev.dgauge_ds + sigma * dev.dy_ds,
@@ -68,7 +81,7 @@ pub fn rail_pose(sigma: f64, rail_y: f64, dev: &Deviation, track: &TrackMotion, 
     RailPose {
         origin: [y + sigma * (dev.y + track.y), dev.z + track.z + sigma * y * roll],
         roll: sigma * roll,
-        turn: angle::small(sigma * roll),
+        turn: (sigma * turn.0, turn.1),
         slope,
         surface_velocity: [
             slope[0] * s_dot + sigma * track.vy,

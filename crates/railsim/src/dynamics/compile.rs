@@ -6,11 +6,12 @@ use std::sync::Arc;
 use crate::body::{RigidBody, Wheelset};
 use crate::connection::{ForceLaw, Mount};
 use crate::contact::friction::FrictionField;
-use crate::contact::geometry_table::{GeometryTable, Pair, Placement};
+use crate::contact::geometry_table::{GeometryTable, PENETRATION, Pair, Placement};
 use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
+use crate::equipment::coupled::{Angled, ENDS};
 use crate::equipment::train::Wagons;
 use crate::equipment::{Bogie, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
@@ -87,25 +88,54 @@ fn equipment(case: &Case, model: &Model) -> Result<Option<Equipment>> {
             .max_by(|a, b| model.bodies[*a].mass.total_cmp(&model.bodies[*b].mass))
             .ok_or_else(|| Error::input(Fault::new(KeyPath::of("vehicle.body"), "none", "a car body")))?,
     };
-    let point = vehicle
-        .outline
-        .as_ref()
-        .map_or(Vec3::zeros(), |o| Vec3::new(-0.5 * o.length_over_couplers, 0.0, -o.coupler_height));
-    let coupler = (body, point - model.bodies[body].position);
+    let [front, rear] = ENDS.map(|end| {
+        let face = vehicle
+            .outline
+            .as_ref()
+            .map_or(Vec3::zeros(), |o| Vec3::new(0.5 * end * o.length_over_couplers, 0.0, -o.coupler_height));
+        face - model.bodies[body].position
+    });
+    let bogies = bogies(model)?;
     let parking = vehicle.parking_brake.as_ref().map(|brake| {
         let on = vehicle.wheelsets.iter().map(|w| brake.wheelsets.contains(&w.name)).collect();
         (brake.clone(), on)
     });
     Ok(Some(Equipment {
         drive: drive.clone(),
-        bogies: bogies(model)?,
+        angled: angled(case, model, &bogies)?,
+        bogies,
         traction: vehicle.traction.clone(),
         dynamic_brake: vehicle.dynamic_brake,
         air_brake: vehicle.air_brake.clone(),
         parking,
-        train: case.run.train.clone().map(|written| Wagons { written, gravity: case.run.gravity }),
-        coupler,
+        train: case.run.train.clone().map(|written| Wagons::new(written, case.run.gravity)),
+        coupler: (body, rear),
+        front,
     }))
+}
+
+/// Couplers at an angle between the vehicle and its neighbours.
+fn angled(case: &Case, model: &Model, bogies: &[Bogie]) -> Result<Option<Angled>> {
+    let Some(written) = &case.run.couplers else { return Ok(None) };
+    let at = KeyPath::of("run.couplers");
+    let Some(outline) = &case.vehicle.outline else {
+        let found = "it with a vehicle without [outline]";
+        return Err(Error::input(Fault::new(at, found, "its length over couplers and coupler height there")));
+    };
+    let places = bogies.iter().map(|b| model.bodies[b.body].position.x);
+    let (rear, front) = places.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+    let length = written.neighbour_length.unwrap_or(outline.length_over_couplers);
+    let pivots = written.neighbour_pivots.unwrap_or(front - rear);
+    if !(pivots > 0.0 && pivots < length) {
+        let allowed = format!("above 0 and below the neighbour's length of {length} m");
+        return Err(Error::input(Fault::new(at.key("neighbour_pivots"), format!("{pivots} m"), allowed)));
+    }
+    let least = 0.5 * outline.length_over_couplers.min(length);
+    if written.shank >= least {
+        let allowed = format!("below half the length of either vehicle, {least} m");
+        return Err(Error::input(Fault::new(at.key("shank"), format!("{} m", written.shank), allowed)));
+    }
+    Ok(Some(Angled { written: written.clone(), length, pivots, height: outline.coupler_height }))
 }
 
 /// What the driver asks for must be there.
@@ -213,11 +243,26 @@ pub fn geometry_table(case: &Case) -> Result<Arc<GeometryTable>> {
     let placement = placement(case)?;
     let wheel = points(case, &case.run.wheel_profile)?.to_vec();
     let rail = points(case, &case.track.rail_profile)?.to_vec();
-    let pair = Pair { wheel, rail, placement };
+    let penetration = penetration(case, &placement);
+    let pair = Pair { wheel, rail, placement, penetration };
     case.tables.get(pair, || {
         let (wheel, rail, placement) = contact_pair(case)?;
-        GeometryTable::build(&wheel, &rail, &placement)
+        GeometryTable::build_at(&wheel, &rail, &placement, penetration)
     })
+}
+
+/// Interpenetration over which the tables of a case average, m: that of its `vehicle.contact.averaging_load`, else of the static wheel load. To a
+/// micrometre, so that vehicles of almost the same weight share their tables. A vehicle without weight takes [`PENETRATION`].
+fn penetration(case: &Case, placement: &Placement) -> f64 {
+    let load = case.vehicle.contact.averaging_load.unwrap_or_else(|| wheel_load(case));
+    if load > 0.0 { 1e-6 * (1e6 * placement.penetration_under(load)).round() } else { PENETRATION }
+}
+
+/// Static wheel load, the mean of all wheels, N. Bodies that are led along the track stand on none.
+fn wheel_load(case: &Case) -> f64 {
+    let vehicle = &case.vehicle;
+    let guided: f64 = vehicle.bodies.iter().filter(|body| body.guided).map(|body| body.mass).sum();
+    (vehicle.mass() - guided) * case.run.gravity / (2.0 * vehicle.wheelsets.len().max(1) as f64)
 }
 
 /// The same pair for direct search ([`Side`]).
@@ -288,8 +333,7 @@ fn contact(case: &Case) -> Result<Contact> {
         return Ok(Contact::Textbook(*book));
     }
     let settings = &case.vehicle.contact;
-    let mass = case.vehicle.mass();
-    let wheel_load = mass * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64);
+    let wheel_load = wheel_load(case);
     Ok(Contact::Profiles {
         table: geometry_table(case)?,
         law: case.run.creep.with_poisson(settings.poisson),

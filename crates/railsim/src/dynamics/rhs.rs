@@ -1,21 +1,18 @@
-//! The right-hand side as a list of stages: kinematics, contacts, connections, speed hold, accelerations.
+//! The right-hand side as a list of stages: angles, kinematics, contacts, connections, speed hold, accelerations.
 
-use crate::body::{Kinematics, Wheelset, Wrench, kinematics, rigid_body, steady_speeds, wheelset};
-use crate::connection::lanes::BushingBlock;
-use crate::connection::{Law, Pair, Pose, Relative};
-use crate::contact::creep::{CreepCase, CreepLaw, Creepage, Patch};
-use crate::contact::creepage::{PlacedContact, TrackMotion, WheelPose, place, rail_pose, wheel_pose};
-use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
-use crate::contact::normal::hunt_crossley;
-use crate::contact::textbook::Textbook;
-use crate::dynamics::model::{Contact, Link, Model};
-use crate::dynamics::scratch::{ContactForce, LeftRail, Scratch, Wheel};
-use crate::dynamics::state::StateMap;
+use crate::body::{Wrench, kinematics, rigid_body, steady_speeds, wheelset};
+use crate::contact::creep::CreepLaw;
+use crate::contact::creepage::{TrackMotion, track_roll};
+use crate::contact::geometry_table::MAX_CONTACTS;
+use crate::dynamics::axle::{Axle, total_force};
+use crate::dynamics::joints::Joints;
+use crate::dynamics::model::{Contact, Model};
+use crate::dynamics::scratch::{LeftRail, Scratch, Wheel};
+use crate::dynamics::state::{PAIR, StateMap, WHEELSET, array, array_mut};
 use crate::dynamics::stiff;
 use crate::equipment::Acting;
 use crate::integrator::{StiffBlock, System};
-use crate::math::Vec3;
-use crate::math::cube_root::cube_root;
+use crate::math::{Vec3, widest};
 use crate::track::Deviation;
 
 /// Below this rolling speed (m/s) creepages are formed with it instead, so that standstill stays finite.
@@ -59,50 +56,13 @@ pub struct VehicleSystem<'m> {
     pub acting: Option<Box<Acting<'m>>>,
     map: StateMap,
     level: bool,
+    /// Weight of each body and wheelset, inertial axes.
+    weights: Vec<Wrench>,
     joints: Joints,
 }
 
-/// Connections as a run evaluates them: everything between the same two bodies sees one relative motion, bushings go side by
-/// side.
-#[derive(Debug)]
-struct Joints {
-    /// Bodies A and B of each joint.
-    pairs: Vec<(usize, usize)>,
-    motions: Vec<Relative>,
-    /// What its connections add up to, on B about A's centre of mass, in A's axes.
-    sums: Vec<Wrench>,
-    blocks: Vec<BushingBlock>,
-    /// Joint and link of every connection that is in no block.
-    single: Vec<(usize, usize)>,
-}
-
-impl Joints {
-    fn new(links: &[Link]) -> Self {
-        let mut pairs: Vec<(usize, usize)> = Vec::new();
-        let (mut blocks, mut single) = (Vec::new(), Vec::new());
-        for (i, link) in links.iter().enumerate() {
-            let pair = (link.a, link.b);
-            let joint = pairs.iter().position(|p| *p == pair).unwrap_or_else(|| {
-                pairs.push(pair);
-                pairs.len() - 1
-            });
-            let beside = match &link.law {
-                Law::Bushing(bushing) if link.axes.is_none() => {
-                    if blocks.last().is_none_or(BushingBlock::is_full) {
-                        blocks.push(BushingBlock::empty());
-                    }
-                    blocks.last_mut().is_some_and(|block| block.add(joint, bushing, &link.mount))
-                }
-                _ => false,
-            };
-            if !beside {
-                single.push((joint, i));
-            }
-        }
-        let still = Relative::between(&Pose::at(Vec3::zeros()), &Pose::at(Vec3::zeros()));
-        let (motions, sums) = (vec![still; pairs.len()], vec![Wrench::zero(); pairs.len()]);
-        Self { pairs, motions, sums, blocks, single }
-    }
+fn weight(newtons: f64) -> Wrench {
+    Wrench { f: Vec3::new(0.0, 0.0, newtons), m: Vec3::zeros() }
 }
 
 impl<'m> VehicleSystem<'m> {
@@ -119,22 +79,50 @@ impl<'m> VehicleSystem<'m> {
             acting: None,
             map: model.map(),
             level: model.layout.is_tangent(),
+            weights: (0..model.count()).map(|i| weight(model.rigid(i).mass * model.gravity)).collect(),
             joints: Joints::new(&model.links),
         }
     }
 
+    /// The track under each wheelset, and sines and cosines of every angle at once.
+    #[inline(always)]
+    fn turn_stage(&mut self, x: &[f64]) {
+        let (bodies, sets) = self.map.parts(x);
+        let Scratch { turns, track_turns, deviation, .. } = &mut self.scratch;
+        for (i, q) in bodies.iter().enumerate() {
+            turns.set(3 * i, q[3]);
+            turns.set(3 * i + 1, q[4]);
+            turns.set(3 * i + 2, q[5]);
+        }
+        for (w, (q, deviation)) in sets.iter().zip(deviation).enumerate() {
+            // Not the second: how far an axle has turned is nobody's angle.
+            let i = bodies.len() + w;
+            turns.set(3 * i, q[3]);
+            turns.set(3 * i + 2, q[5]);
+            *deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
+            let (widening, slope) = self.model.layout.widening(q[0]);
+            deviation.gauge += widening;
+            deviation.dgauge_ds += slope;
+            track_turns.set(w, track_roll(deviation, q[8]));
+        }
+        turns.update();
+        track_turns.update();
+    }
+
     #[inline(always)]
     fn kinematics_stage(&mut self, x: &[f64], dx: &mut [f64]) {
-        for i in 0..self.model.count() {
-            let q = &x[self.map.q(i)];
-            let frame = self.model.layout.frame(q[0]);
-            let spins = i >= self.model.bodies.len();
-            let (u, k) = (&x[self.map.u(i)], &mut self.scratch.kinematics[i]);
-            kinematics(q, u, frame, spins, self.level, &mut dx[self.map.q(i)], k);
-            self.scratch.wrench[i] = Wrench {
-                f: Vec3::new(0.0, 0.0, self.model.rigid(i).mass * self.model.gravity),
-                m: Vec3::zeros(),
-            };
+        let ((bodies, sets), (d_bodies, d_sets)) = (self.map.parts(x), self.map.parts_mut(dx));
+        let (layout, level) = (&self.model.layout, self.level);
+        let Scratch { turns, kinematics: all, wrench, .. } = &mut self.scratch;
+        wrench.copy_from_slice(&self.weights);
+        let (k_bodies, k_sets) = all.split_at_mut(bodies.len());
+        for (i, ((x, dx), k)) in bodies.iter().zip(d_bodies).zip(k_bodies).enumerate() {
+            let (q, u, dq) = (array(x, 0), array(x, 6), array_mut(dx, 0));
+            kinematics(q, turns.three(i), u, layout.frame(q[0]), false, level, dq, k);
+        }
+        for (w, ((x, dx), k)) in sets.iter().zip(d_sets).zip(k_sets).enumerate() {
+            let (q, u, dq) = (array(x, 0), array(x, PAIR), array_mut(dx, 0));
+            kinematics(q, turns.three(bodies.len() + w), u, layout.frame(q[0]), true, level, dq, k);
         }
     }
 
@@ -142,11 +130,11 @@ impl<'m> VehicleSystem<'m> {
     #[inline(always)]
     fn guide_stage(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         for &i in &self.model.guided {
-            let q = &x[self.map.q(i)];
+            let q = array(x, self.map.start(i));
             let frame = self.model.layout.frame(q[0]);
             let u = steady_speeds(q, &frame, self.program.at(t).1, 0.0, false);
-            let k = &mut self.scratch.kinematics[i];
-            kinematics(q, &u, frame, false, self.level, &mut dx[self.map.q(i)], k);
+            let (turns, k) = (self.scratch.turns.three(i), &mut self.scratch.kinematics[i]);
+            kinematics(q, turns, &u, frame, false, self.level, array_mut(dx, self.map.start(i)), k);
         }
     }
 
@@ -154,8 +142,8 @@ impl<'m> VehicleSystem<'m> {
     #[inline(always)]
     fn contact_stage(&mut self, x: &[f64]) {
         self.scratch.creep_cases.clear();
-        for w in 0..self.model.wheelsets.len() {
-            self.place_wheels(w, x);
+        for (w, numbers) in self.map.parts(x).1.iter().enumerate() {
+            self.place_wheels(w, numbers);
         }
         self.creep_stage(x);
         for w in 0..self.model.wheelsets.len() {
@@ -164,17 +152,10 @@ impl<'m> VehicleSystem<'m> {
     }
 
     #[inline(always)]
-    fn place_wheels(&mut self, w: usize, x: &[f64]) {
-        let at = self.model.bodies.len() + w;
+    fn place_wheels(&mut self, w: usize, x: &[f64; WHEELSET]) {
         let scratch = &mut self.scratch;
-        let q = &x[self.map.q(at)];
-        let k = &scratch.kinematics[at];
-        let mut deviation = if self.irregular { self.model.deviation.at(q[0]) } else { Deviation::default() };
-        let (widening, slope) = self.model.layout.widening(q[0]);
-        deviation.gauge += widening;
-        deviation.dgauge_ds += slope;
-        scratch.deviation[w] = deviation;
-        let (tq, tu) = (&x[self.map.track_q(w)], &x[self.map.track_u(w)]);
+        let k = &scratch.kinematics[self.model.bodies.len() + w];
+        let (q, tq, tu) = (array(x, 0), array::<3>(x, 6), array::<3>(x, PAIR + 6));
         let axle = Axle {
             model: self.model,
             set: &self.model.wheelsets[w],
@@ -184,13 +165,15 @@ impl<'m> VehicleSystem<'m> {
             w_T: k.R_TB * k.w_B,
             speed: k.v_T.x.abs().max(LEAST_ROLLING_SPEED),
             track: TrackMotion { y: tq[0], z: tq[1], phi: tq[2], vy: tu[0], vz: tu[1], vphi: tu[2] },
-            deviation,
+            track_turn: scratch.track_turns.at(w),
+            deviation: scratch.deviation[w],
         };
-        for (side, sigma) in [-1.0, 1.0].into_iter().enumerate() {
-            let wheel = &mut scratch.wheels[w][side];
-            if let Err(out) = axle.wheel(sigma, wheel, &mut scratch.creep_cases) {
-                scratch.left_rail =
-                    Some(LeftRail { wheelset: w, side: sigma, shift: out.shift, roll: out.roll });
+        // One after the other instead of a loop: each side is compiled with its own sign.
+        let ([left, right], cases) = (&mut scratch.wheels[w], &mut scratch.creep_cases);
+        let ends = [(-1.0, axle.wheel(-1.0, left, cases)), (1.0, axle.wheel(1.0, right, cases))];
+        for (side, end) in ends {
+            if let Err(out) = end {
+                scratch.left_rail = Some(LeftRail { wheelset: w, side, shift: out.shift, roll: out.roll });
             }
         }
     }
@@ -225,21 +208,19 @@ impl<'m> VehicleSystem<'m> {
         let mut cases = scratch.creep_cases.iter_mut();
         for (w, wheels) in scratch.wheels.iter_mut().enumerate() {
             for (side, wheel) in wheels.iter_mut().enumerate() {
-                let mut first = true;
+                let mut count = 0;
                 for contact in wheel.contacts_mut().iter_mut().filter(|c| c.creeps) {
                     let Some(case) = cases.next() else { return };
                     case.mu *= acting.sand();
-                    if first {
-                        let steady = [case.creepage.xi, case.creepage.eta];
-                        let known = Some((contact.placed.slip, steady, case.patch.a));
-                        let given = acting.creepage(self.model, self.map, (w, side), known, x);
-                        [case.creepage.xi, case.creepage.eta] = given;
-                        contact.placed.creepage = case.creepage;
-                        first = false;
-                    }
+                    let steady = [case.creepage.xi, case.creepage.eta];
+                    let known = Some((contact.placed.slip, steady, case.patch.a));
+                    let given = acting.creepage(self.model, self.map, (w, side, count), known, x);
+                    [case.creepage.xi, case.creepage.eta] = given;
+                    contact.placed.creepage = case.creepage;
+                    count += 1;
                 }
-                if first {
-                    acting.creepage(self.model, self.map, (w, side), None, x);
+                for none in count..MAX_CONTACTS {
+                    acting.creepage(self.model, self.map, (w, side, none), None, x);
                 }
             }
         }
@@ -300,31 +281,8 @@ impl<'m> VehicleSystem<'m> {
 
     #[inline(always)]
     fn connection_stage(&mut self, x: &[f64], dx: &mut [f64]) {
-        let Joints { pairs, motions, sums, blocks, single } = &mut self.joints;
         let (kinematics, wrench) = (&self.scratch.kinematics, &mut self.scratch.wrench);
-        for ((motion, sum), (a, b)) in motions.iter_mut().zip(sums.iter_mut()).zip(&*pairs) {
-            *motion = Relative::between(&kinematics[*a].pose, &kinematics[*b].pose);
-            *sum = Wrench::zero();
-        }
-        for block in &*blocks {
-            block.apply(motions, sums);
-        }
-        for (joint, link) in &*single {
-            let link = &self.model.links[*link];
-            let one = link.wrench(&motions[*joint], x);
-            sums[*joint].f += one.f;
-            sums[*joint].m += one.m;
-            if !link.memory.is_empty() {
-                link.memory_rates(&motions[*joint], x, dx);
-            }
-        }
-        for ((motion, sum), (a, b)) in motions.iter().zip(&*sums).zip(&*pairs) {
-            let pair = Pair::new(sum, motion, &kinematics[*a].pose.R);
-            wrench[*a].f += pair.on_A.f;
-            wrench[*a].m += pair.on_A.m;
-            wrench[*b].f += pair.on_B.f;
-            wrench[*b].m += pair.on_B.m;
-        }
+        self.joints.act(&self.model.links, kinematics, x, dx, wrench);
     }
 
     #[inline(always)]
@@ -346,195 +304,48 @@ impl<'m> VehicleSystem<'m> {
 
     #[inline(always)]
     fn acceleration_stage(&mut self, x: &[f64], dx: &mut [f64]) {
-        let first = self.model.bodies.len();
-        for i in 0..self.model.count() {
-            let body = self.model.rigid(i);
-            let (k, wrench) = (&self.scratch.kinematics[i], &self.scratch.wrench[i]);
-            let du = &mut dx[self.map.u(i)];
+        let ((bodies, sets), (d_bodies, d_sets)) = (self.map.parts(x), self.map.parts_mut(dx));
+        let Scratch { kinematics, wrench, wheel_moment, track_load, .. } = &self.scratch;
+        let (k_bodies, k_sets) = kinematics.split_at(bodies.len());
+        let (w_bodies, w_sets) = wrench.split_at(bodies.len());
+        for ((body, dx), (k, wrench)) in
+            self.model.bodies.iter().zip(d_bodies).zip(k_bodies.iter().zip(w_bodies))
+        {
+            let du = array_mut(dx, 6);
             rigid_body::translate(k, body.mass, wrench, self.level, du);
-            if i < first {
-                rigid_body::rotate(k, &body.inertia, &k.pose.R.tr_mul(&wrench.m), du);
-            } else {
-                wheelset::rotate(k, &body.inertia, wrench, &self.scratch.wheel_moment[i - first], du);
-            }
+            rigid_body::rotate(k, &body.inertia, &k.pose.R.tr_mul(&wrench.m), du);
+        }
+        let forces = k_sets.iter().zip(w_sets).zip(wheel_moment.iter().zip(track_load));
+        for ((set, (x, dx)), ((k, wrench), (moment, load))) in
+            self.model.wheelsets.iter().zip(sets.iter().zip(d_sets)).zip(forces)
+        {
+            let du = array_mut(dx, PAIR);
+            rigid_body::translate(k, set.body.mass, wrench, self.level, du);
+            wheelset::rotate(k, &set.body.inertia, wrench, moment, du);
+            self.accelerate_track(x, load, dx);
         }
         for &i in &self.model.guided {
             let du = &mut dx[self.map.u(i)];
             du.fill(0.0);
             du[0] = self.program.acceleration;
         }
-        for w in 0..self.model.wheelsets.len() {
-            let (tq, tu) = (self.map.track_q(w), self.map.track_u(w));
-            match &self.model.support {
-                Some(support) => {
-                    let m = [support.mass, support.mass, support.inertia];
-                    for d in 0..3 {
-                        let (q, v) = (x[tq.start + d], x[tu.start + d]);
-                        dx[tq.start + d] = v;
-                        dx[tu.start + d] = (self.scratch.track_load[w][d]
-                            - support.stiffness[d] * q
-                            - support.damping[d] * v)
-                            / m[d];
-                    }
-                }
-                None => {
-                    dx[tq].fill(0.0);
-                    dx[tu].fill(0.0);
-                }
-            }
-        }
     }
-}
 
-/// A wheelset as its two wheels see it.
-struct Axle<'a> {
-    model: &'a Model,
-    set: &'a Wheelset,
-    creeping: bool,
-    q: &'a [f64],
-    k: &'a Kinematics,
-    w_T: Vec3,
-    speed: f64,
-    track: TrackMotion,
-    deviation: Deviation,
-}
-
-/// Angle of a contact's normal to the vertical, by its functions: most contacts of this kind have none to work out.
-#[derive(Debug, Clone, Copy)]
-struct Lean {
-    sin: f64,
-    cos: f64,
-    tan: f64,
-}
-
-impl Lean {
-    const NONE: Self = Self { sin: 0.0, cos: 1.0, tan: 0.0 };
-
-    fn of(angle: f64) -> Self {
-        let (sin, cos) = angle.sin_cos();
-        Self { sin, cos, tan: sin / cos }
-    }
-}
-
-impl Axle<'_> {
-    /// One wheel: place it on its rail, look its contacts up, give each its normal force and ask for its creep force. Gives
-    /// back the pose with which the wheel left the table.
+    /// The track mass under a wheelset, where there is one; `load` is on it.
     #[inline(always)]
-    fn wheel(&self, sigma: f64, wheel: &mut Wheel, cases: &mut Vec<CreepCase>) -> Result<(), WheelPose> {
-        let (half, radius) = (self.set.tape_half_distance, self.set.radius);
-        match &self.model.contact {
-            Contact::Profiles { table, shear_modulus, dissipation, friction, .. } => {
-                let rail_y = table.rail_origin_y();
-                let rail = rail_pose(sigma, rail_y, &self.deviation, &self.track, self.k.s_dot);
-                let pose = wheel_pose(sigma, self.q, self.k, half, radius, half - rail_y, &rail);
-                wheel.lift(pose.shift);
-                let mut found = [ContactPoint::default(); MAX_CONTACTS];
-                let count = table
-                    .contacts(pose.shift, pose.roll, pose.depth, pose.yaw, &mut found)
-                    .map_err(|_| pose)?;
-                for point in &found[..count] {
-                    let contact = wheel.add();
-                    let (q, k) = (self.q, self.k);
-                    let placed = place(sigma, point, &rail, radius, q, k, &self.w_T, &self.track, self.speed);
-                    let n =
-                        hunt_crossley(point.hertz, placed.penetration, placed.approach_rate, *dissipation);
-                    contact.geometry = Some(*point);
-                    contact.normal = point.share * n.force;
-                    contact.normal_slope = [point.share * n.stiffness, point.share * n.damping];
-                    contact.creep = [0.0; 2];
-                    let mu = friction.at(usize::from(sigma > 0.0), q[0], placed.slip);
-                    contact.creeps = self.creeping && contact.normal > 0.0 && mu > 0.0;
-                    if contact.creeps {
-                        cases.push(CreepCase {
-                            patch: patch(point, contact.normal, *shear_modulus),
-                            creepage: placed.creepage,
-                            mu,
-                        });
-                    }
-                    contact.placed = placed;
-                }
-            }
-            Contact::Textbook(book) => {
-                let rail = rail_pose(sigma, half, &self.deviation, &self.track, self.k.s_dot);
-                let pose = wheel_pose(sigma, self.q, self.k, half, radius, 0.0, &rail);
-                wheel.lift(pose.shift);
-                let lean = if book.gravity_stiffness {
-                    Lean::of(book.conicity.atan() - sigma * self.q[3])
-                } else {
-                    Lean::NONE
-                };
-                let depth = pose.depth + lean.tan * pose.shift;
-                if depth > 0.0 {
-                    *wheel.add() = self.textbook(book, sigma, pose.shift, depth, lean, rail.surface_velocity);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// `lean` is the normal's inward, `surface` the velocity of the running surface, side coordinates.
-    #[inline(always)]
-    fn textbook(
-        &self,
-        book: &Textbook,
-        sigma: f64,
-        shift: f64,
-        depth: f64,
-        lean: Lean,
-        surface: [f64; 2],
-    ) -> ContactForce {
-        let half = sigma * self.set.tape_half_distance;
-        // In axle axes the contact is below the tape circle, at the rolling radius there.
-        let lever = self.k.R_TB * Vec3::new(0.0, half, self.set.radius + book.conicity * shift);
-        let rail = Vec3::new(0.0, self.track.vy, self.track.vz + half * self.track.vphi);
-        let v_wheel = self.k.v_T + self.w_T.cross(&lever);
-        let slip = v_wheel - rail;
-        let rate = v_wheel.z - surface[1] + lean.tan * (sigma * v_wheel.y - surface[0]);
-        let creepage = Creepage {
-            xi: slip.x / self.speed,
-            eta: sigma * slip.y / self.speed,
-            phi: sigma * self.w_T.z / self.speed,
+    fn accelerate_track(&self, x: &[f64; WHEELSET], load: &[f64; 3], dx: &mut [f64; WHEELSET]) {
+        let Some(support) = &self.model.support else {
+            *array_mut::<3>(dx, 6) = [0.0; 3];
+            *array_mut::<3>(dx, PAIR + 6) = [0.0; 3];
+            return;
         };
-        let normal = (book.stiffness * depth + book.damping * rate).max(0.0);
-        ContactForce {
-            geometry: None,
-            placed: PlacedContact {
-                lever,
-                point: [half + self.track.y, self.track.z],
-                e_t: Vec3::new(0.0, sigma, 0.0),
-                e_n: Vec3::new(0.0, -sigma * lean.sin, -lean.cos),
-                penetration: depth,
-                approach_rate: rate,
-                slip: [slip.x, sigma * slip.y],
-                creepage,
-            },
-            normal,
-            normal_slope: [book.stiffness, book.damping],
-            creep: [-book.f11 * creepage.xi, -book.f22 * creepage.eta - book.f23 * creepage.phi],
-            creeps: false,
+        let m = [support.mass, support.mass, support.inertia];
+        for d in 0..3 {
+            let (q, v) = (x[6 + d], x[PAIR + 6 + d]);
+            dx[6 + d] = v;
+            dx[PAIR + 6 + d] = (load[d] - support.stiffness[d] * q - support.damping[d] * v) / m[d];
         }
     }
-}
-
-/// The patch of a contact of the geometry table under load.
-#[inline(always)]
-pub(crate) fn patch(point: &ContactPoint, normal: f64, shear_modulus: f64) -> Patch {
-    let root = cube_root(normal);
-    Patch {
-        a: point.a1 * root,
-        b: point.b1 * root,
-        n: normal,
-        c11: point.c11,
-        c22: point.c22,
-        c23: point.c23,
-        shear_modulus,
-    }
-}
-
-/// Force of one contact on the wheel, track axes, N.
-#[inline(always)]
-pub(crate) fn total_force(c: &ContactForce) -> Vec3 {
-    c.normal * c.placed.e_n + c.creep[1] * c.placed.e_t + Vec3::new(c.creep[0], 0.0, 0.0)
 }
 
 impl System for VehicleSystem<'_> {
@@ -543,7 +354,7 @@ impl System for VehicleSystem<'_> {
     }
 
     fn rhs(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.stages_best(t, x, dx);
+        widest::run(&mut Stages { system: self, t, x, dx });
     }
 
     fn stiff_blocks(&self) -> &[StiffBlock] {
@@ -560,34 +371,27 @@ impl System for VehicleSystem<'_> {
     }
 }
 
+/// An evaluation, in the widest registers that there are.
+struct Stages<'a, 'm> {
+    system: &'a mut VehicleSystem<'m>,
+    t: f64,
+    x: &'a [f64],
+    dx: &'a mut [f64],
+}
+
+impl widest::Work for Stages<'_, '_> {
+    #[inline(always)]
+    fn run(&mut self) {
+        self.system.stages(self.t, self.x, self.dx);
+    }
+}
+
 impl VehicleSystem<'_> {
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)] // the one way to call code for instructions that not every processor has
-    fn stages_best(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has just said that it has AVX2.
-            unsafe { self.stages_avx2(t, x, dx) }
-        } else {
-            self.stages(t, x, dx);
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    fn stages_best(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.stages(t, x, dx);
-    }
-
-    /// The same stages in wider registers. Nothing fuses a multiplication with an addition: the same bytes.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn stages_avx2(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.stages(t, x, dx);
-    }
-
     /// The right-hand side ([`System::rhs`]) with the instructions that every processor has.
     // Stages and what they call are `inline(always)`, so that they are compiled again for wider ones.
     #[inline(always)]
     pub fn stages(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.turn_stage(x);
         self.kinematics_stage(x, dx);
         self.guide_stage(t, x, dx);
         self.contact_stage(x);

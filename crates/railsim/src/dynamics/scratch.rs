@@ -6,6 +6,7 @@ use crate::contact::creepage::PlacedContact;
 use crate::contact::geometry_table::{ContactPoint, MAX_CONTACTS};
 use crate::dynamics::model::Model;
 use crate::math::Vec3;
+use crate::math::angle::Turns;
 use crate::track::Deviation;
 
 /// One contact with its forces. Written by the contact stage.
@@ -91,8 +92,12 @@ pub struct Scratch {
     pub track_load: Vec<[f64; 3]>,
     /// Wheels of each wheelset: left, right. Written by the contact stage.
     pub wheels: Vec<[Wheel; 2]>,
-    /// Irregularity under each wheelset. Written by the contact stage.
+    /// Irregularity under each wheelset. Written by the turn stage.
     pub deviation: Vec<Deviation>,
+    /// Roll, pitch and yaw of every body and wheelset. Written by the turn stage.
+    pub(crate) turns: Turns,
+    /// Roll of the track under every wheelset. Written by the turn stage.
+    pub(crate) track_turns: Turns,
     /// Set by the contact stage, cleared by whoever reads it.
     pub left_rail: Option<LeftRail>,
     /// What the creep-force law is asked in one go, and its answers: every contact under load, in the order of the wheels.
@@ -112,6 +117,8 @@ impl Scratch {
             track_load: vec![[0.0; 3]; ws],
             wheels: vec![[Wheel::default(); 2]; ws],
             deviation: vec![Deviation::default(); ws],
+            turns: Turns::new(3 * all),
+            track_turns: Turns::new(ws),
             left_rail: None,
             creep_cases: Vec::with_capacity(2 * MAX_CONTACTS * ws),
             creep_forces: vec![CreepForce::default(); 2 * MAX_CONTACTS * ws],

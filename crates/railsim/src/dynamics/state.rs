@@ -83,6 +83,45 @@ impl StateMap {
     }
 }
 
+impl StateMap {
+    /// The numbers of each body and of each wheelset with its track mass.
+    #[inline(always)]
+    #[must_use]
+    pub fn parts<'x>(&self, x: &'x [f64]) -> (&'x [[f64; BODY]], &'x [[f64; WHEELSET]]) {
+        let (bodies, rest) = x.split_at(self.bodies * BODY);
+        (bodies.as_chunks().0, rest[..self.wheelsets * WHEELSET].as_chunks().0)
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub fn parts_mut<'x>(&self, x: &'x mut [f64]) -> (&'x mut [[f64; BODY]], &'x mut [[f64; WHEELSET]]) {
+        let (bodies, rest) = x.split_at_mut(self.bodies * BODY);
+        (bodies.as_chunks_mut().0, rest[..self.wheelsets * WHEELSET].as_chunks_mut().0)
+    }
+}
+
+/// `N` numbers from `at` on, as an array: where both are known when compiled, nothing is left to check in a run.
+///
+/// # Panics
+/// Where there are not so many.
+#[inline(always)]
+#[must_use]
+pub fn array<const N: usize>(x: &[f64], at: usize) -> &[f64; N] {
+    let Some(array) = x[at..].first_chunk() else { panic!("{N} numbers from {at} on, of {}", x.len()) };
+    array
+}
+
+/// The same, to be written.
+///
+/// # Panics
+/// Where there are not so many.
+#[inline(always)]
+pub fn array_mut<const N: usize>(x: &mut [f64], at: usize) -> &mut [f64; N] {
+    let count = x.len();
+    let Some(array) = x[at..].first_chunk_mut() else { panic!("{N} numbers from {at} on, of {count}") };
+    array
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,5 +148,25 @@ mod tests {
             assert!(map.track_q(w).chain(map.track_u(w)).all(|element| map.owner(element) == Some(3 + w)));
         }
         assert!(map.memory().all(|element| map.owner(element).is_none()));
+    }
+
+    #[test]
+    fn parts_are_what_the_ranges_say() {
+        let map = StateMap { bodies: 3, wheelsets: 2, memory: 4 };
+        let mut x: Vec<f64> = (0..map.size()).map(|i| i as f64).collect();
+        let (bodies, sets) = map.parts(&x);
+        assert_eq!((bodies.len(), sets.len()), (3, 2));
+        for (i, body) in bodies.iter().enumerate() {
+            assert_eq!(array::<6>(body, 0), &x[map.q(i)]);
+            assert_eq!(array::<6>(body, 6), &x[map.u(i)]);
+        }
+        for (w, set) in sets.iter().enumerate() {
+            assert_eq!(array::<6>(set, 0), &x[map.q(3 + w)]);
+            assert_eq!(array::<3>(set, 6), &x[map.track_q(w)]);
+            assert_eq!(array::<6>(set, PAIR), &x[map.u(3 + w)]);
+            assert_eq!(array::<3>(set, PAIR + 6), &x[map.track_u(w)]);
+        }
+        array_mut::<3>(&mut map.parts_mut(&mut x).1[1], 6)[0] = -1.0;
+        assert_eq!(x[map.track_q(1)][0], -1.0);
     }
 }

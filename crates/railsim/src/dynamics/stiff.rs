@@ -3,9 +3,10 @@
 //! contact planes stand still, creep is the secant slope, the suspension above is left out.
 
 use crate::contact::creepage::PlacedContact;
+use crate::dynamics::axle::patch;
 use crate::dynamics::model::{Contact, Model};
-use crate::dynamics::rhs::{LEAST_ROLLING_SPEED, patch};
-use crate::dynamics::scratch::{ContactForce, Scratch};
+use crate::dynamics::rhs::LEAST_ROLLING_SPEED;
+use crate::dynamics::scratch::{ContactForce, Scratch, Wheel};
 use crate::dynamics::state::PAIR;
 use crate::equipment::stick::CONTACT_DAMPING;
 use crate::math::Vec3;
@@ -66,13 +67,12 @@ fn half_length(force: &ContactForce) -> f64 {
 }
 
 /// Fills `k` and `c` (9 x 9, row-major): `d(speeds)/dt ~ -k positions - c speeds` for wheelset `w` and its track.
-/// `sticking` is the share of the deflection in the creepage of a wheel's first contact, 0 in a run without a driver.
+/// `sticking` is the share of the deflection in the creepage of contacts, 0 in a run without a driver.
 pub fn matrices(model: &Model, scratch: &Scratch, w: usize, sticking: f64, k: &mut [f64], c: &mut [f64]) {
     k.fill(0.0);
     c.fill(0.0);
     let speed = scratch.kinematics[model.bodies.len() + w].v_T.x.abs().max(LEAST_ROLLING_SPEED);
-    let contacts = scratch.wheels[w].iter().flat_map(|wheel| wheel.contacts().iter().enumerate());
-    for (i, contact) in contacts {
+    for contact in scratch.wheels[w].iter().flat_map(Wheel::contacts) {
         let n = direction(&contact.placed, &contact.placed.e_n);
         let t = direction(&contact.placed, &contact.placed.e_t);
         let x = direction(&contact.placed, &Vec3::x());
@@ -84,7 +84,7 @@ pub fn matrices(model: &Model, scratch: &Scratch, w: usize, sticking: f64, k: &m
         add_outer(c, contact.normal_slope[1], &n, &n);
         let slope = creep_slope(&model.contact, contact, speed);
         for (slope, e) in slope.into_iter().zip([&x, &t]) {
-            if sticking > 0.0 && i == 0 {
+            if sticking > 0.0 {
                 // At rest a spring: the slope over creepage becomes one over the deflection of half a patch.
                 let spring = sticking * slope * speed / half_length(contact);
                 add_outer(k, spring, e, e);

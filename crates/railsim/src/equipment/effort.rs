@@ -34,12 +34,13 @@ pub fn dynamic_brake(data: &DynamicBrake, share: f64, speed: f64) -> f64 {
     share * data.max_effort * power * fade
 }
 
-/// Running resistance (N) of a vehicle of `mass` (kg) at `speed` (m/s): modified Davis (AAR RP-548), per tonne
-/// `6.5 + 320/(w n) + 0.046 v + 0.096 v^2/(w n)` N with w tonnes on each of n axles and v in km/h; w n is the vehicle's mass.
+/// Running resistance (N) of `vehicles` vehicles of `mass` in all (kg) at `speed` (m/s): modified Davis (AAR RP-548), per tonne
+/// `6.5 + 320/(w n) + 0.046 v + 0.096 v^2/(w n)` N with w tonnes on each of n axles and v in km/h; w n is a vehicle's mass, so
+/// that two of the terms go by vehicles.
 #[must_use]
-pub fn davis(mass: f64, speed: f64) -> f64 {
+pub fn davis(mass: f64, vehicles: f64, speed: f64) -> f64 {
     let (tonnes, kmh) = (1e-3 * mass, 3.6 * speed.abs());
-    tonnes * (6.5 + 0.046 * kmh) + 320.0 + 0.096 * kmh * kmh
+    tonnes * (6.5 + 0.046 * kmh) + vehicles * (320.0 + 0.096 * kmh * kmh)
 }
 
 /// Curve resistance (N) of a vehicle of `mass` (kg) in a curve of `curvature` (1/m): 0.8 lb per short ton and degree of curve
@@ -96,10 +97,11 @@ mod tests {
         }
     }
 
-    /// 1634 t at 43 km/h by hand: 1634 (6.5 + 0.046 43) + 320 + 0.096 43^2 = 14.35 kN.
+    /// 1634 t at 43 km/h by hand: 1634 (6.5 + 0.046 43) = 13.853 kN, and 320 + 0.096 43^2 = 497.5 N for each vehicle.
     #[test]
     fn resistance_of_a_train() {
-        assert!((davis(1634e3, 43.0 / 3.6) - 14_350.6).abs() < 1.0);
+        assert!((davis(1634e3, 1.0, 43.0 / 3.6) - 14_350.6).abs() < 1.0);
+        assert!((davis(1634e3, 21.0, 43.0 / 3.6) - (13_853.05 + 21.0 * 497.504)).abs() < 1.0);
         assert!((curve_resistance(100e3, 1.0 / 685.0) - 1000.0).abs() < 1e-9);
     }
 }

@@ -10,6 +10,7 @@
 //! At rest wheels stick ([`stick`]).
 
 pub mod air_brake;
+pub mod coupled;
 pub mod effort;
 pub mod slip;
 pub mod stick;
@@ -20,6 +21,7 @@ use crate::body::{Kinematics, coordinate};
 use crate::connection::RELAXATION_TIME;
 use crate::dynamics::{Model, Scratch, StateMap};
 use crate::equipment::air_brake::Pneumatics;
+use crate::equipment::coupled::{Angled, ENDS};
 use crate::equipment::slip::{Gains, Lag, SlipController, SlipObserver, slip};
 use crate::equipment::thermal::Motor;
 use crate::equipment::train::Wagons;
@@ -59,15 +61,19 @@ pub struct Equipment {
     pub parking: Option<(ParkingBrake, Vec<bool>)>,
     /// The train.
     pub train: Option<Wagons>,
-    /// Rear coupler: body, and its place from the centre of mass, body axes, m.
+    /// Rear coupler's pulling face: body, and its place from the centre of mass, body axes, m.
     pub coupler: (usize, Vec3),
+    /// The front one's place from the same centre of mass.
+    pub front: Vec3,
+    /// Couplers at an angle.
+    pub angled: Option<Angled>,
 }
 
 impl Equipment {
     /// Numbers of state for a vehicle of `wheelsets` wheelsets: deflections of its contacts, of its blocks, the train.
     #[must_use]
     pub fn states(&self, wheelsets: usize) -> usize {
-        5 * wheelsets + self.train.as_ref().map_or(0, Wagons::states)
+        (stick::MEMORY + 1) * wheelsets + self.train.as_ref().map_or(0, Wagons::states)
     }
 
     /// What a control law of the user's can set, by name.
@@ -116,10 +122,19 @@ impl Equipment {
         }
         if let Some(train) = &self.train {
             add("train.drawbar", Q::Drawbar);
+            if train.ahead() > 0 {
+                add("train.front.drawbar", Q::FrontDrawbar);
+            }
             add("train.rear.v", Q::RearSpeed);
             if train.written.wagons > 1 {
                 add("train.largest.drawbar", Q::LargestDrawbar);
                 add("train.least.drawbar", Q::LeastDrawbar);
+            }
+        }
+        if self.angled.is_some() {
+            for (end, name) in ["front", "rear"].into_iter().enumerate() {
+                add(&format!("coupler.{name}.drawbar"), [Q::FrontDrawbar, Q::Drawbar][end]);
+                add(&format!("coupler.{name}.angle"), Q::CouplerAngle(end));
             }
         }
         for (w, set) in model.wheelsets.iter().enumerate() {
@@ -160,6 +175,10 @@ pub enum Quantity {
     BrakeEffort,
     /// Force in the vehicle's rear coupler, N, + pull.
     Drawbar,
+    /// The same in its front coupler.
+    FrontDrawbar,
+    /// Angle of the front (0) or rear (1) coupler against the car body, rad, + where it leads to the vehicle's right.
+    CouplerAngle(usize),
     /// Largest force in any coupling, N.
     LargestDrawbar,
     /// Least force in any coupling, N.
@@ -191,6 +210,8 @@ pub struct Acting<'m> {
     own_brake: Option<Pneumatics>,
     wagon_brakes: Vec<f64>,
     pipes: Vec<Pneumatics>,
+    /// Effort of each mass of the train.
+    efforts: Vec<Lag>,
     /// Force of all blocks of each wheelset: air, parking, N.
     blocks: Vec<[f64; 2]>,
     /// Rates of contact deflections, written where creepages are.
@@ -199,7 +220,8 @@ pub struct Acting<'m> {
     sanded: f64,
     /// Independent brake that a control law asks for, Pa.
     asked: Option<f64>,
-    drawbar: f64,
+    /// Forces in the front and rear couplers, N, + pull.
+    drawbars: [f64; 2],
     brake_effort: f64,
 }
 
@@ -217,10 +239,11 @@ impl<'m> Acting<'m> {
         let pipes =
             design.train.as_ref().filter(|t| t.written.brake_force > 0.0).map_or(Vec::new(), |train| {
                 let length = -design.coupler.1.x;
-                (0..train.written.wagons as usize)
+                (0..train.masses.len())
                     .filter_map(|i| pneumatics(length + train.distance(i), false))
                     .collect()
             });
+        let masses = design.train.as_ref().map_or(0, |t| t.masses.len());
         let mut acting = Self {
             design,
             first: model.map().size(),
@@ -231,14 +254,15 @@ impl<'m> Acting<'m> {
             torques: vec![Lag::default(); wheelsets],
             motors: rating.map_or(Vec::new(), |r| vec![Motor::new(&r, share); design.bogies.len()]),
             own_brake: pneumatics(0.0, true),
-            wagon_brakes: vec![0.0; design.train.as_ref().map_or(0, |t| t.written.wagons as usize)],
+            wagon_brakes: vec![0.0; masses],
             pipes,
+            efforts: vec![Lag::default(); masses],
             blocks: vec![[0.0; 2]; wheelsets],
-            returns: vec![0.0; 4 * wheelsets],
+            returns: vec![0.0; stick::MEMORY * wheelsets],
             rolling: vec![0.0; wheelsets],
             sanded: 1.0,
             asked: None,
-            drawbar: 0.0,
+            drawbars: [0.0; 2],
             brake_effort: 0.0,
         };
         acting.press();
@@ -257,26 +281,12 @@ impl<'m> Acting<'m> {
         self.design.drive.period
     }
 
-    fn deflection(&self, w: usize, side: usize) -> usize {
-        self.first + 4 * w + 2 * side
-    }
-
     fn block(&self, w: usize) -> usize {
-        self.first + 4 * self.wheelsets + w
+        self.first + stick::MEMORY * self.wheelsets + w
     }
 
     fn train_at(&self) -> usize {
-        self.first + 5 * self.wheelsets
-    }
-
-    /// Puts the train behind the vehicle that stands in `x`.
-    pub fn place_train(&self, model: &Model, x: &mut [f64]) {
-        let Some(train) = &self.design.train else { return };
-        let (body, p) = &self.design.coupler;
-        let map = model.map();
-        let lead = [x[map.q(*body).start] + p.x, x[map.u(*body).start]];
-        let at = self.train_at();
-        train.place(lead[0], lead[1], &mut x[at..at + train.states()]);
+        self.first + (stick::MEMORY + 1) * self.wheelsets
     }
 
     /// Block forces from pressures.
@@ -306,6 +316,7 @@ impl<'m> Acting<'m> {
         self.heat(model, t);
         let (traction, braking) = self.references(t, v);
         self.slip_control(model, map, t, x, v, traction - braking);
+        self.command_locomotives(t, x);
         self.sanded = match &drive.sanding {
             Some(sand) if t >= sand.delay && sand.demand.at(t - sand.delay) > 0.0 => sand.friction_factor,
             _ => 1.0,
@@ -440,12 +451,9 @@ impl<'m> Acting<'m> {
             let axis = scratch.kinematics[bogie.body].pose.R.column(1).into_owned();
             scratch.wrench[bogie.body].m += reaction * axis;
         }
-        for w in 0..self.wheelsets {
-            let at = self.deflection(w, 0);
-            dx[at..at + 4].copy_from_slice(&self.returns[4 * w..4 * w + 4]);
-        }
+        dx[self.first..self.first + self.returns.len()].copy_from_slice(&self.returns);
         self.resist(model, scratch);
-        self.pull(model, x, dx, scratch);
+        self.couple(model, t, x, dx, scratch);
     }
 
     /// Torque (N m, + forward) of the blocks on wheelset `w`: sticking, a spring; sliding, friction.
@@ -474,25 +482,9 @@ impl<'m> Acting<'m> {
         let k: &Kinematics = &scratch.kinematics[body];
         let (mass, v) = (model.mass(), k.v_T.x);
         let curvature = k.frame.k_T.z;
-        let against = effort::davis(mass, v) + effort::curve_resistance(mass, curvature);
+        let against = effort::davis(mass, 1.0, v) + effort::curve_resistance(mass, curvature);
         let force = k.frame.R_IT.column(0) * (-against * effort::direction(v));
         scratch.wrench[body].f += force;
-    }
-
-    fn pull(&mut self, model: &Model, x: &[f64], dx: &mut [f64], scratch: &mut Scratch) {
-        let Some(train) = &self.design.train else { return };
-        let (body, p) = &self.design.coupler;
-        let k = &scratch.kinematics[*body];
-        let lead = [x[model.map().q(*body).start] + p.x, k.s_dot];
-        let at = self.train_at();
-        let range = at..at + train.states();
-        let brakes = &self.wagon_brakes;
-        let pull = train.rates(&model.layout, lead, |i| brakes[i], &x[range.clone()], &mut dx[range]);
-        self.drawbar = pull;
-        let force = k.frame.R_IT.column(0) * -pull;
-        let moment = (k.pose.R * p).cross(&force);
-        scratch.wrench[*body].f += force;
-        scratch.wrench[*body].m += moment;
     }
 
     /// Factor of sand on friction.
@@ -525,13 +517,6 @@ impl<'m> Acting<'m> {
         };
         let load = |w: usize, side: usize| scratch.wheels[w][side].Q;
         let ratio = |force: f64, load: f64| if load > 0.0 { force / load } else { 0.0 };
-        let train = || {
-            let train = self.design.train.as_ref()?;
-            let (body, p) = &self.design.coupler;
-            let lead = [x[map.q(*body).start] + p.x, scratch.kinematics[*body].s_dot];
-            let own = &x[self.train_at()..self.train_at() + train.states()];
-            Some((0..train.written.wagons as usize).map(move |i| train.force(lead, own, i)))
-        };
         let wheels = || (0..self.wheelsets).flat_map(|w| [(w, 0), (w, 1)]);
         let own = self.own_brake;
         match quantity {
@@ -547,9 +532,11 @@ impl<'m> Acting<'m> {
             Q::Cylinder => own.map_or(f64::NAN, |p| p.cylinder),
             Q::Block => self.blocks.first().map_or(f64::NAN, |b| b[0]),
             Q::BrakeEffort => self.brake_effort,
-            Q::Drawbar => self.drawbar,
-            Q::LargestDrawbar => train().map_or(f64::NAN, |f| f.fold(f64::NEG_INFINITY, f64::max)),
-            Q::LeastDrawbar => train().map_or(f64::NAN, |f| f.fold(f64::INFINITY, f64::min)),
+            Q::Drawbar => self.drawbars[1],
+            Q::FrontDrawbar => self.drawbars[0],
+            Q::CouplerAngle(end) => self.coupler_angle(ENDS[end], model, x, scratch),
+            Q::LargestDrawbar => self.drawbar_of(model, x, scratch, f64::max),
+            Q::LeastDrawbar => self.drawbar_of(model, x, scratch, f64::min),
             Q::RearSpeed => x[x.len() - train::WAGON + 1],
             Q::Slip(w) => {
                 let spin = x[map.u(map.bodies + w).start + coordinate::THETA];

@@ -1,5 +1,5 @@
 //! At rest wheels stick. Below [`STEADY`] the creepage that the creep law is asked for is the tangential deflection of the contact
-//! over its half-length a, which follows the sliding velocity w by `dz/dt = w - max(V, |w|) z/a`: rolling, that is the steady creepage w/V
+//! over its half-length a (each contact of a wheel has its own, numbered from the tread to the flange tip), which follows the sliding velocity w by `dz/dt = w - max(V, |w|) z/a`: rolling, that is the steady creepage w/V
 //! after rolling some a; at rest it is a spring with the slope of the creep law, so that a wheel stands on a gradient
 //! without creeping, and slides beyond the friction limit. In the state stands z less the way that the coordinates of axle and track
 //! say, so that the spring is one between positions, which the implicit scheme knows (transient rolling contact to first order: Knothe and Gross-Thebing, Vehicle
@@ -7,12 +7,17 @@
 
 use super::Acting;
 use crate::body::coordinate;
+use crate::contact::geometry_table::MAX_CONTACTS;
 use crate::dynamics::{Model, Scratch, StateMap};
 
 /// From this rolling speed on (m/s) creepage is the steady one; below half of it the contact's deflection.
 pub const STEADY: f64 = 4.0;
 /// Fastest return of a contact's deflection, 1/s: explicit schemes follow it at any step here.
 const FASTEST_RETURN: f64 = 400.0;
+/// Numbers of state of a wheelset: two for every contact that either wheel can have.
+pub(super) const MEMORY: usize = 2 * WHEEL;
+/// The same of a wheel.
+const WHEEL: usize = 2 * MAX_CONTACTS;
 /// Damping of a contact's deflection over its stiffness, s: what rings at rest dies away. Rolling, it has no effect.
 pub const CONTACT_DAMPING: f64 = 5e-4;
 
@@ -45,17 +50,18 @@ impl Acting<'_> {
         ]
     }
 
-    /// Creepage (longitudinal, lateral) of the first contact of a wheel that slides with `slip` (m/s) on a patch of half-length `a`,
+    /// Creepage (longitudinal, lateral) of contact `n` of a wheel that slides with `slip` (m/s) on a patch of half-length `a`,
     /// given the steady one; without a contact (`None`) the deflection is let go. Keeps the rate of the contact's memory.
     pub(crate) fn creepage(
         &mut self,
         model: &Model,
         map: StateMap,
-        (w, side): (usize, usize),
+        (w, side, n): (usize, usize, usize),
         contact: Option<([f64; 2], [f64; 2], f64)>,
         x: &[f64],
     ) -> [f64; 2] {
-        let at = self.deflection(w, side);
+        let memory = MEMORY * w + WHEEL * side + 2 * n;
+        let at = self.first + memory;
         let (way, rate) = (self.way(model, map, w, side, x, false), self.way(model, map, w, side, x, true));
         let share = self.sticking(w);
         let mut given = [0.0; 2];
@@ -70,7 +76,7 @@ impl Acting<'_> {
                 }
                 None => -FASTEST_RETURN * z,
             };
-            self.returns[4 * w + 2 * side + d] = turning - rate[d];
+            self.returns[memory + d] = turning - rate[d];
         }
         given
     }
@@ -80,9 +86,9 @@ impl Acting<'_> {
         let map = model.map();
         for (w, side) in (0..self.wheelsets).flat_map(|w| [(w, 0), (w, 1)]) {
             let way = self.way(model, map, w, side, x, false);
-            let at = self.deflection(w, side);
-            for d in 0..2 {
-                x[at + d] = -way[d];
+            let at = self.first + MEMORY * w + WHEEL * side;
+            for contact in x[at..at + WHEEL].chunks_exact_mut(2) {
+                contact.copy_from_slice(&way.map(|d| -d));
             }
         }
     }

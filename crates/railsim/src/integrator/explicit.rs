@@ -39,8 +39,13 @@ impl Explicit {
         first_slope(system, t, x, slope, &mut self.slopes[0], statistics);
         for (stage, row) in a.iter().enumerate() {
             let (known, rest) = self.slopes.split_at_mut(stage + 1);
-            self.argument.copy_from_slice(x);
-            for (k, weight) in known.iter().zip(*row).filter(|(_, weight)| **weight != 0.0) {
+            let mut terms = known.iter().zip(*row).filter(|(_, weight)| **weight != 0.0);
+            if let Some((k, weight)) = terms.next() {
+                for ((to, from), k) in self.argument.iter_mut().zip(&*x).zip(k) {
+                    *to = from + h * weight * k;
+                }
+            }
+            for (k, weight) in terms {
                 add(&mut self.argument, h * weight, k);
             }
             system.rhs(t + c[stage + 1] * h, &self.argument, &mut rest[0]);

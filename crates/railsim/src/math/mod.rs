@@ -1,9 +1,9 @@
 //! Mathematics without a rail word in it.
 
 pub mod angle;
-pub mod arctan;
 pub mod cube_root;
 pub mod eigen;
+pub mod elementary;
 pub mod elliptic;
 pub mod fft;
 pub mod hermite;
@@ -11,6 +11,7 @@ pub mod quadrature;
 pub mod rotation;
 pub mod small_lu;
 pub mod table;
+pub mod widest;
 
 /// Column of three.
 pub type Vec3 = nalgebra::Vector3<f64>;

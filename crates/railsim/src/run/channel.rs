@@ -18,7 +18,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 69] = [
+const PARTS: [(&str, &str, &str); 70] = [
     ("Fx", "N", "longitudinal creep force on the wheel, + forward"),
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force on the flange, all contacts there"),
@@ -28,6 +28,7 @@ const PARTS: [(&str, &str, &str); 69] = [
     ("Q", "N", "vertical wheel force, + presses on the rail"),
     ("Y", "N", "lateral wheel force on the rail, + outward"),
     ("adhesion", "1", "longitudinal creep force over the load of the same wheels, + forward"),
+    ("angle", "rad", "coupler in plan against the car body, + where it leads to the vehicle's right"),
     ("ax", "m/s2", "acceleration along the body's x axis, without gravity"),
     ("ay", "m/s2", "acceleration along the body's y axis (right), without gravity"),
     ("az", "m/s2", "acceleration along the body's z axis (down), without gravity"),

@@ -272,14 +272,96 @@ fn one() -> u32 {
     1
 }
 
-/// What hangs behind the vehicle: wagons as masses on the design line. One of them with the train's mass is a lumped train.
+fn whole() -> f64 {
+    1.0
+}
+
+/// A locomotive of the train, as a mass with effort. It pulls and brakes with the vehicle's own curves and demands at its own speed, after
+/// the same lag, never limited by adhesion.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrainLocomotive {
+    /// Which of the masses it is, the first of the train being 1; the vehicle itself is not counted.
+    #[schemars(extend("minimum" = 1))]
+    pub at: u32,
+    /// Mass, kg.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "kg"))]
+    pub mass: f64,
+    /// What its wheelsets' turning adds to its inertia, kg.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "unit" = "kg"))]
+    pub rotary_mass: f64,
+    /// Its effort over that of the vehicle.
+    #[serde(default = "whole")]
+    #[schemars(extend("minimum" = 0))]
+    pub effort: f64,
+}
+
+/// Couplers that stand at an angle to the car body. Each lies in the line between its pivot and that of a neighbour, whose bogie centres
+/// stand on the track's centre line.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Couplers {
+    /// From the pivot in the underframe to the pulling face, m; the neighbours' too.
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+    pub shank: f64,
+    /// Length of the neighbours over their couplers, m; the vehicle's own if absent.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+    pub neighbour_length: Option<f64>,
+    /// Distance of the neighbours' bogie centres, m; the vehicle's own if absent.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
+    pub neighbour_pivots: Option<f64>,
+    /// Force in the front coupler beside what `run.train` gives: times (s) and forces (N, + pull), straight between them.
+    #[serde(default)]
+    pub front: Vec<[f64; 2]>,
+    /// The same in the rear coupler.
+    #[serde(default)]
+    pub rear: Vec<[f64; 2]>,
+}
+
+impl Couplers {
+    /// What a schema cannot say.
+    #[must_use]
+    pub fn faults(&self, at: &KeyPath) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (key, course) in [("front", &self.front), ("rear", &self.rear)] {
+            let mut before = f64::NEG_INFINITY;
+            for (i, [t, force]) in course.iter().enumerate() {
+                let key = at.key(key).index(i);
+                if !(t.is_finite() && *t > before) {
+                    let allowed = "finite times (s), each after the one before";
+                    faults.push(Fault::new(key.index(0), format!("{t} s"), allowed));
+                }
+                if !force.is_finite() {
+                    faults.push(Fault::new(key.index(1), force.to_string(), "a finite force, N"));
+                }
+                before = *t;
+            }
+        }
+        faults
+    }
+}
+
+/// What the vehicle is coupled to: masses on the design line. One of them with the train's mass is a lumped train.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Train {
-    /// Number of wagons.
+    /// Number of masses: wagons, and the locomotives among them.
     #[serde(default = "one")]
     #[schemars(extend("minimum" = 1, "maximum" = 1000))]
     pub wagons: u32,
+    /// How many of them run ahead of the vehicle.
+    #[serde(default)]
+    pub ahead: u32,
+    /// Locomotives among them.
+    #[serde(default)]
+    pub locomotives: Vec<TrainLocomotive>,
+    /// Vehicles that each mass stands for in the running resistance, whose constant and v^2 parts go by vehicles.
+    #[serde(default = "one")]
+    #[schemars(extend("minimum" = 1, "maximum" = 1000))]
+    pub vehicles: u32,
     /// Mass of each, kg.
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "kg"))]
     pub mass: f64,
@@ -301,4 +383,25 @@ pub struct Train {
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "unit" = "N"))]
     pub brake_force: f64,
+}
+
+impl Train {
+    /// What a schema cannot say.
+    #[must_use]
+    pub fn faults(&self, at: &KeyPath) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        if self.ahead > self.wagons {
+            let allowed = format!("0 to run.train.wagons = {}", self.wagons);
+            faults.push(Fault::new(at.key("ahead"), self.ahead.to_string(), allowed));
+        }
+        for (i, locomotive) in self.locomotives.iter().enumerate() {
+            let key = at.key("locomotives").index(i).key("at");
+            let taken = self.locomotives[..i].iter().any(|other| other.at == locomotive.at);
+            if taken || !(1..=self.wagons).contains(&locomotive.at) {
+                let allowed = format!("a place of its own, 1 to run.train.wagons = {}", self.wagons);
+                faults.push(Fault::new(key, locomotive.at.to_string(), allowed));
+            }
+        }
+        faults
+    }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::drive::{Drive, Train};
+use super::drive::{Couplers, Drive, Train};
 use crate::contact::creep::CreepLaw;
 use crate::contact::friction::Friction;
 use crate::contact::textbook::Textbook;
@@ -111,9 +111,12 @@ pub struct Run {
     /// `time`, `air_brake`: what the driver asks of traction and brakes. With it no speed is held.
     #[serde(default)]
     pub drive: Option<Drive>,
-    /// `time`: what hangs behind the vehicle.
+    /// `time`: what the vehicle is coupled to.
     #[serde(default)]
     pub train: Option<Train>,
+    /// `time`: couplers at an angle, with their lateral forces. Without it what the train pulls with is along the track.
+    #[serde(default)]
+    pub couplers: Option<Couplers>,
 }
 
 fn no_integrator() -> Integrator {

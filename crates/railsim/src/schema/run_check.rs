@@ -7,7 +7,7 @@ use super::run::{Load, Run, RunKind, Search};
 use crate::error::Fault;
 
 /// Keys that only some kinds of run have a use for, with those kinds.
-const OWNED: [(&str, &[RunKind]); 10] = [
+const OWNED: [(&str, &[RunKind]); 11] = [
     ("disturbance", &[RunKind::Time, RunKind::CriticalSpeed]),
     ("start", &[RunKind::Time]),
     ("place", &[RunKind::Equilibrium, RunKind::QuasiStatic, RunKind::Modal, RunKind::CriticalSpeed]),
@@ -18,6 +18,7 @@ const OWNED: [(&str, &[RunKind]); 10] = [
     ("search", &[RunKind::CriticalSpeed]),
     ("drive", &[RunKind::Time, RunKind::AirBrake]),
     ("train", &[RunKind::Time, RunKind::AirBrake]),
+    ("couplers", &[RunKind::Time]),
 ];
 
 /// Speeds that a search looks at, at most; more is a slip of the pen.
@@ -75,8 +76,10 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
 /// What holds between `drive`, `train` and the rest.
 fn drive(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
     let Some(drive) = &run.drive else {
-        if run.train.is_some() {
-            at(node, "train", "this key beside run.drive", faults);
+        for (key, there) in [("train", run.train.is_some()), ("couplers", run.couplers.is_some())] {
+            if there {
+                at(node, key, "this key beside run.drive", faults);
+            }
         }
         if run.kind == RunKind::AirBrake {
             needs(node, "drive", "a table: what the brakes are asked for", faults);
@@ -85,6 +88,8 @@ fn drive(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
     };
     let Some(table) = node.get("drive") else { return };
     faults.extend(drive.faults(&table.at));
+    faults.extend(run.train.iter().flat_map(|train| train.faults(&node.at.key("train"))));
+    faults.extend(run.couplers.iter().flat_map(|couplers| couplers.faults(&node.at.key("couplers"))));
     if run.kind == RunKind::AirBrake {
         needs(node, "output_step", "a number > 0 s", faults);
         if drive.until.time.is_none() {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -13,8 +14,9 @@ from lmap.criteria import Stage, trace
 from lmap.errors import JudgementProblem
 from lmap.report import words
 from lmap.report.figures.envelope import Array
-from lmap.report.figures.plot import FAINT_BUCKETS, Curve, Figure, Mark, View, samples, shown, time
-from lmap.report.numbers import given, number, quantity, with_unit
+from lmap.report.figures.plot import FAINT_BUCKETS, TIME_AXIS, Curve, Figure, Mark, View, samples, shown, time
+from lmap.report.numbers import given, quantity, with_unit
+from lmap.signals import counted
 from lmap.verdict import CaseResult, CriterionVerdict, Outcome, SpecVerdict
 
 WHOLE = "whole run"
@@ -122,7 +124,6 @@ def _judged(verdict: CriterionVerdict, case: CaseResult) -> list[View]:
     rows = (_axis(verdict),)
     raw = [curve for curve in front if curve.role == "raw"]
     rest = [curve for curve in front if curve.role != "raw"]
-    caption = _caption(verdict)
     whole = View(
         verdict.case,
         WHOLE,
@@ -132,13 +133,20 @@ def _judged(verdict: CriterionVerdict, case: CaseResult) -> list[View]:
         mark,
         window,
         verdict.message,
-        caption,
+        _caption(verdict),
+        along=_along(case),
     )
-    if mark is None:
+    if mark is None or whole.along != TIME_AXIS:
         return [whole]
     reach = max(_NEAR_S, 1.5 * (window[1] - window[0]) if window else 0.0) / 2.0
     near = tuple(_cut(curve, mark.t - reach, mark.t + reach) for curve in (*raw, *rest))
-    return [whole, View(verdict.case, NEAR, rows, near, limits, mark, window, verdict.message, caption)]
+    return [whole, replace(whole, stretch=NEAR, curves=near)]
+
+
+def _along(case: CaseResult) -> str:
+    """Title of the horizontal axis: rows of an analysis are no moments."""
+    rows = counted(samples(case).columns)
+    return TIME_AXIS if rows is None else {"step": "load step"}.get(rows, rows.replace("_", " "))
 
 
 def _stages(verdict: CriterionVerdict, case: CaseResult, signal: str) -> list[Stage]:
@@ -233,14 +241,12 @@ def _limits(verdict: CriterionVerdict) -> tuple[tuple[float, str], ...]:
 
 
 def _mark(verdict: CriterionVerdict, stages: Sequence[Stage]) -> Mark | None:
-    if verdict.at is None or verdict.value is None or "t" not in verdict.at or not words.placed(verdict):
+    if verdict.at is None or verdict.value is None or not words.placed(verdict):
         return None
-    t, value = verdict.at["t"], verdict.value
-    text = [quantity(value, verdict.unit)]
-    place = f"t = {number(t)} s"
-    if "s" in verdict.at:
-        place += f", s = {number(verdict.at['s'])} m"
-    return Mark(t, _side(stages, t, value), (*text, place))
+    t, value = words.along(verdict.at), verdict.value
+    if t is None:
+        return None
+    return Mark(t, _side(stages, t, value), (quantity(value, verdict.unit), words.place(verdict.at)))
 
 
 def _side(stages: Sequence[Stage], t: float, value: float) -> float:

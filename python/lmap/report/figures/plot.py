@@ -19,7 +19,7 @@ from lmap.report.sheet import escape, packed
 from lmap.verdict import CaseResult
 
 TIME_AXIS = "time t (s)"
-"""Every figure has time below; hovering tells the value."""
+"""What figures have below, but for those of an analysis; hovering tells the value."""
 
 BUCKETS = 1200
 """Stretches of a curve in a whole run: more than a screen has columns for it."""
@@ -78,6 +78,8 @@ class View:
     message: str | None = None
     """Why there is nothing, or not everything, to see."""
     caption: str = ""
+    along: str = TIME_AXIS
+    """Title of the horizontal axis."""
     raw: Mapping[str, Any] | None = None
     """`data` and `layout` as they are, where the plot is not over time."""
 
@@ -128,7 +130,7 @@ def plotly(view: View) -> dict[str, Any]:
     if view.raw is not None:
         return dict(view.raw)
     axes = _axes(len(view.rows))
-    data = [_trace(curve) for curve in view.curves]
+    data = [_trace(curve, view.along) for curve in view.curves]
     span = _span(view.curves)
     for value, label in view.limits:
         data.append(_limit(span, value, label))
@@ -141,7 +143,7 @@ def plotly(view: View) -> dict[str, Any]:
         if limits is not None:
             axis["range"] = limits
         layout[_axis("yaxis", row)] = axis
-    layout["xaxis"] = {"title": {"text": TIME_AXIS}, "anchor": _axis("y", len(view.rows) - 1), "range": span}
+    layout["xaxis"] = {"title": {"text": view.along}, "anchor": _axis("y", len(view.rows) - 1), "range": span}
     if view.window is not None:
         layout["shapes"].append(
             {
@@ -160,13 +162,14 @@ def plotly(view: View) -> dict[str, Any]:
         layout["annotations"].append(_limit_label(value, label))
     if view.mark is not None and span is not None:
         data.append(_mark(view.mark))
-        layout["annotations"].append(_mark_label(view.mark, span, _range(view)))
+        layout["annotations"].append(_mark_label(view, view.mark, span))
     return {"data": data, "layout": layout}
 
 
-def _trace(curve: Curve) -> dict[str, Any]:
+def _trace(curve: Curve, along: str) -> dict[str, Any]:
     t, values = envelope(curve.t, curve.values, curve.buckets)
     name, unit = escape(curve.name), escape(curve.unit)
+    where = "%{x:.3f} s" if along == TIME_AXIS else f"{along} %{{x:.4g}}"
     trace: dict[str, Any] = {
         "type": "scatter",
         "mode": "lines",
@@ -175,7 +178,7 @@ def _trace(curve: Curve) -> dict[str, Any]:
         "y": packed(values),
         "yaxis": _axis("y", curve.row),
         "line": {"width": curve.width, "dash": curve.dash},
-        "hovertemplate": f"%{{y:.4g}} {unit} at %{{x:.3f}} s<extra>{name}</extra>",
+        "hovertemplate": f"%{{y:.4g}} {unit} at {where}<extra>{name}</extra>",
         "meta": {"role": curve.role, "group": curve.group or curve.name},
         "visible": not curve.hidden,
     }
@@ -224,10 +227,41 @@ def _mark(mark: Mark) -> dict[str, Any]:
     }
 
 
-def _mark_label(mark: Mark, span: list[float], limits: list[float] | None) -> dict[str, Any]:
-    """Beside the mark, on the side where the plot has room."""
-    right = mark.t > span[0] + 0.5 * (span[1] - span[0])
-    up = limits is None or mark.value < limits[0] + 0.6 * (limits[1] - limits[0])
+_PLOT = (960.0, 288.0)
+"""Pixels of a plot as it mostly is: a label is placed before the page knows."""
+_LETTER, _LINE = 6.6, 16.0
+"""Pixels that a letter and a line of a label take."""
+
+
+def _mark_label(view: View, mark: Mark, span: list[float]) -> dict[str, Any]:
+    """Beside the mark, where it covers least of the curves and lies within the plot; near rather than far."""
+    low, high = _range(view) or (mark.value - 1.0, mark.value + 1.0)
+    scale = _PLOT[0] / ((span[1] - span[0]) or 1.0), _PLOT[1] / ((high - low) or 1.0)
+    size = _LETTER * max(map(len, mark.text)), _LINE * len(mark.text) + 6.0
+    at = (mark.t - span[0]) * scale[0], (high - mark.value) * scale[1]
+    points = [
+        ((curve.t - span[0]) * scale[0], (high - curve.values) * scale[1])
+        for curve in view.curves
+        if not curve.hidden
+    ]
+    lines = [(high - value) * scale[1] for value, _ in view.limits]
+
+    def hidden(place: tuple[int, int]) -> float:
+        ax, ay = place
+        left = at[0] + ax - (size[0] if ax < 0 else 0.0)
+        top = at[1] + ay - size[1] / 2.0
+        right, bottom = left + size[0], top + size[1]
+        covered = 0.0
+        for x, y in points:
+            beside = (x >= left) & (x <= right)
+            if beside.any():
+                covered += float(np.mean((y[beside] >= top) & (y[beside] <= bottom)))
+        covered += sum(top <= line <= bottom for line in lines)
+        outside = left < 0.0 or right > _PLOT[0] or top < 0.0 or bottom > _PLOT[1]
+        return covered + (10.0 if outside else 0.0)
+
+    places = [(ax, ay) for ay in (-44, 44, -72, 72, -110, 110, -150, 150) for ax in (28, -28)]
+    ax, ay = min(places, key=hidden)  # the first of equals
     return {
         "x": mark.t,
         "y": mark.value,
@@ -235,9 +269,9 @@ def _mark_label(mark: Mark, span: list[float], limits: list[float] | None) -> di
         "align": "left",
         "showarrow": True,
         "arrowhead": 0,
-        "ax": -28 if right else 28,
-        "ay": -44 if up else 44,
-        "xanchor": "right" if right else "left",
+        "ax": ax,
+        "ay": ay,
+        "xanchor": "right" if ax < 0 else "left",
         "yanchor": "middle",
         "borderpad": 3,
         "role": "extreme",

@@ -2,6 +2,7 @@
 
 use super::{CreepCase, CreepForce, Creepage, Patch};
 use crate::error::{Fault, KeyPath};
+use crate::math::widest;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -148,26 +149,22 @@ impl<const L: usize> Block<L> {
         }
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn march_avx2(&mut self, nx: u16) {
-        self.march(nx);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)] // the one way to call code for instructions that not every processor has
+    /// The same with the widest instructions there are.
     fn march_best(&mut self, nx: u16) {
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has just said that it has AVX2.
-            unsafe { self.march_avx2(nx) }
-        } else {
-            self.march(nx);
-        }
+        widest::run(&mut Marching { block: self, nx });
     }
+}
 
-    #[cfg(not(target_arch = "x86_64"))]
-    fn march_best(&mut self, nx: u16) {
-        self.march(nx);
+/// A block to be marched.
+struct Marching<'a, const L: usize> {
+    block: &'a mut Block<L>,
+    nx: u16,
+}
+
+impl<const L: usize> widest::Work for Marching<'_, L> {
+    #[inline(always)]
+    fn run(&mut self) {
+        self.block.march(self.nx);
     }
 }
 

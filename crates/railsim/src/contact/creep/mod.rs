@@ -120,13 +120,6 @@ pub struct CreepCase {
     pub mu: f64,
 }
 
-impl CreepCase {
-    /// Load, extent and friction, without which there is no force.
-    fn carries(&self) -> bool {
-        self.patch.n > 0.0 && self.patch.a > 0.0 && self.patch.b > 0.0 && self.mu > 0.0
-    }
-}
-
 /// A creep-force law, as written in a case: `creep = { kind = "fastsim", nx = 10, ny = 10 }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -160,9 +153,16 @@ impl CreepLaw {
     /// overflows (creepages beyond some 1e100), the patch slides as a whole. Does not allocate.
     #[must_use]
     pub fn force(&self, patch: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
-        let mut force = [CreepForce::default()];
-        self.forces(&[CreepCase { patch: *patch, creepage: *creepage, mu }], &mut force);
-        force[0]
+        let force = match self {
+            Self::Fastrip(law) => law.force(patch, creepage, mu),
+            Self::Fastsim(law) => law.force(patch, creepage, mu),
+            Self::KalkerLinear(law) => law.force(patch, creepage),
+            Self::ModifiedFastsim(law) => law.force(patch, creepage, mu),
+            Self::Polach(law) => law.force(patch, creepage, mu),
+            Self::ShenHedrickElkins(law) => law.force(patch, creepage, mu),
+            Self::VermeulenJohnson(law) => law.force(patch, creepage, mu),
+        };
+        finite(force, patch, creepage, mu)
     }
 
     /// Forces of several patches, the same to the bit as one by one: `forces[i]` for `cases[i]`. Does not allocate.
@@ -176,16 +176,12 @@ impl CreepLaw {
             Self::Fastsim(law) => law.forces(cases, forces),
             Self::KalkerLinear(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage)),
             Self::ModifiedFastsim(law) => law.forces(cases, forces),
-            Self::Polach(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
+            Self::Polach(law) => law.forces(cases, forces),
             Self::ShenHedrickElkins(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
             Self::VermeulenJohnson(law) => each(cases, forces, |c| law.force(&c.patch, &c.creepage, c.mu)),
         }
-        for (force, case) in forces.iter_mut().zip(cases) {
-            if !case.carries() {
-                *force = CreepForce::default();
-            } else if !(force.fx.is_finite() && force.fy.is_finite()) {
-                *force = sliding(&case.patch, &case.creepage, case.mu);
-            }
+        for (force, c) in forces.iter_mut().zip(cases) {
+            *force = finite(*force, &c.patch, &c.creepage, c.mu);
         }
     }
 
@@ -195,10 +191,9 @@ impl CreepLaw {
     /// no slope in common with C33 (the method's error, stated in the documentation). Dear: not for the right-hand side.
     #[must_use]
     pub fn spin_moment(&self, patch: &Patch, c33: f64, creepage: &Creepage, mu: f64) -> Option<f64> {
-        let case = CreepCase { patch: *patch, creepage: *creepage, mu };
         let moment = match self {
             Self::Polach(_) | Self::ShenHedrickElkins(_) | Self::VermeulenJohnson(_) => return None,
-            _ if !case.carries() => 0.0,
+            _ if !carries(patch, mu) => 0.0,
             Self::Fastrip(law) => law.spin_moment(patch, creepage, mu),
             Self::Fastsim(law) => strip::moment(law.nx, law.ny, patch, creepage, mu),
             Self::KalkerLinear(law) => law.spin_moment(patch, c33, creepage),
@@ -263,6 +258,24 @@ impl CreepLaw {
         all.extend(ShenHedrickElkins::examples().into_iter().map(Self::ShenHedrickElkins));
         all.extend(VermeulenJohnson::examples().into_iter().map(Self::VermeulenJohnson));
         all
+    }
+}
+
+/// Load, extent and friction, without which there is no force.
+#[inline(always)]
+fn carries(patch: &Patch, mu: f64) -> bool {
+    patch.n > 0.0 && patch.a > 0.0 && patch.b > 0.0 && mu > 0.0
+}
+
+/// What a law gave, where it may give a force and that is a number.
+#[inline(always)]
+fn finite(force: CreepForce, patch: &Patch, creepage: &Creepage, mu: f64) -> CreepForce {
+    if !carries(patch, mu) {
+        CreepForce::default()
+    } else if force.fx.is_finite() && force.fy.is_finite() {
+        force
+    } else {
+        sliding(patch, creepage, mu)
     }
 }
 

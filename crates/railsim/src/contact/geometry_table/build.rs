@@ -1,10 +1,10 @@
 //! Building a [`GeometryTable`]: two searches per node, coarse over the whole wheel, fine where it may touch.
 
+use super::grid::Shifts;
 use super::seam::{Seams, USUAL_ROLL};
 use super::{
     BLEND_FROM, BLEND_TO, Gaps, GeometryTable, LEAST_CURVATURE, LEAST_PENETRATION, MOST_PENETRATION, NO_RAIL,
-    PENETRATION, Part, Placement, ROLL_RANGE, ROLL_STEP, ROLLS, SHIFT_RANGE, SHIFT_STEP, SHIFTS, Values,
-    YAW_FULL, YAW_TRAVEL,
+    PENETRATION, Part, Placement, ROLL_RANGE, ROLL_STEP, ROLLS, Values, YAW_FULL, YAW_TRAVEL,
 };
 use crate::contact::profile::{Profile, ProfileKind, SPACING};
 use crate::contact::search::VIRTUAL;
@@ -101,13 +101,16 @@ impl GeometryTable {
             return Err(Error::input(Fault::new(KeyPath::of("penetration"), found, "1 to 200 um")));
         }
         let (rail, rail_origin_y) = place_rail(rail, placement)?;
+        let shifts = Shifts::new(wheel, placement.tape_half_distance - rail_origin_y, placement);
+        let count = shifts.count() * ROLLS;
         let mut table = Self {
             placement: *placement,
             rail_origin_y,
             rail,
             flange_angle: wheel.stations().iter().fold(0.0, |most, s| most.max(-s.direction)),
-            gaps: Vec::with_capacity(SHIFTS * ROLLS),
-            values: [Vec::with_capacity(SHIFTS * ROLLS), Vec::with_capacity(SHIFTS * ROLLS)],
+            shifts,
+            gaps: Vec::with_capacity(count),
+            values: [Vec::with_capacity(count), Vec::with_capacity(count)],
             split: [None, None],
         };
         table.fill(wheel, penetration);
@@ -119,14 +122,19 @@ impl GeometryTable {
         let supports = zones(wheel);
         let mut seams = [Seams::new(stations.len()), Seams::new(stations.len())];
         let rail = self.rail.clone();
-        let scene =
-            Scene { rail: &rail, stations: &stations, penetration, placement: &self.placement.clone() };
+        let scene = Scene {
+            rail: &rail,
+            stations: &stations,
+            penetration,
+            placement: &self.placement.clone(),
+            shifts: self.shifts,
+        };
         // of the patch whose averages these are; the stations at hand reach no further
         let approach = (penetration / VIRTUAL).min(penetration + SLACK);
         let mut scratch = Scratch::default();
         let mut near: [Vec<(usize, f64)>; 2] = Default::default();
         let mut extents: [Vec<Range<usize>>; 2] = Default::default();
-        scene.nodes(self.rail_origin_y, wheel, |turned, roll, offset| {
+        scene.nodes(self.rail_origin_y, wheel, |turned, roll, offset, close| {
             scene.look(turned, offset, 0..stations.len(), &mut scratch);
             let mut gaps = Gaps { gap: [NO_RAIL; 2], yaw: [0.0; 2] };
             for zone in 0..2 {
@@ -143,7 +151,7 @@ impl GeometryTable {
                 extents[zone].push(extent(turned, &near[zone], gaps.gap[zone], penetration));
             }
             let least = gaps.gap[0].min(gaps.gap[1]);
-            let usual = roll.abs() < USUAL_ROLL;
+            let usual = close && roll.abs() < USUAL_ROLL;
             for zone in (0..2).filter(|&z| usual && gaps.gap[z] - least < approach) {
                 seams[zone].note(turned, &supports[zone].chi, &near[zone], gaps.gap[zone], approach);
             }
@@ -247,11 +255,12 @@ struct Scene<'a> {
     stations: &'a [WheelStation],
     penetration: f64,
     placement: &'a Placement,
+    shifts: Shifts,
 }
 
 impl Scene<'_> {
-    /// Goes through all nodes in the order of the table.
-    fn nodes(&self, rail_origin_y: f64, wheel: &Profile, mut node: impl FnMut(&[Turned], f64, f64)) {
+    /// Goes through all nodes in the order of the table: the turned wheel, its roll, where it stands, whether nodes are close together there.
+    fn nodes(&self, rail_origin_y: f64, wheel: &Profile, mut node: impl FnMut(&[Turned], f64, f64, bool)) {
         let nominal = self.placement.tape_half_distance - rail_origin_y;
         let mut turned = Vec::with_capacity(self.stations.len());
         for j in 0..ROLLS {
@@ -267,8 +276,8 @@ impl Scene<'_> {
                     cos: direction.abs().min(STEEPEST_CONTACT).cos(),
                 }
             }));
-            for i in 0..SHIFTS {
-                node(&turned, roll, nominal - SHIFT_RANGE + SHIFT_STEP * i as f64);
+            for i in 0..self.shifts.count() {
+                node(&turned, roll, self.shifts.from(nominal, i), self.shifts.is_close(i));
             }
         }
     }
@@ -282,9 +291,9 @@ impl Scene<'_> {
         known: impl Fn(usize) -> Option<([f64; 2], Values)>,
         scratch: &mut Scratch,
     ) -> Part {
-        let count = SHIFTS * ROLLS;
+        let count = self.shifts.count() * ROLLS;
         let mut out = Part { gaps: Vec::with_capacity(count), values: Vec::with_capacity(count) };
-        self.nodes(rail_origin_y, wheel, |turned, _, offset| {
+        self.nodes(rail_origin_y, wheel, |turned, _, offset, _| {
             let (gap, values) = known(out.gaps.len()).unwrap_or_else(|| {
                 self.look(turned, offset, support.first..support.end, scratch);
                 self.node(turned, offset, support, scratch)

@@ -7,24 +7,25 @@ use crate::error::{Fault, KeyPath};
 /// Least steepness of what counts as a flange: 30 degrees. A cone that reaches the gauge's depth guides nothing.
 const FLANGE_SLOPE: f64 = 0.577;
 
+/// y of the flange face at the depth at which the gauge is measured, m from the running circle; `None` of a wheel without a flange that deep.
+pub(super) fn flange(wheel: &Profile, depth: f64) -> Option<f64> {
+    wheel
+        .points
+        .windows(2)
+        .filter(|w| w[0][0] < 0.0 && (w[0][1] - depth) * (w[1][1] - depth) <= 0.0)
+        .filter(|w| (w[1][1] - w[0][1]).abs() > FLANGE_SLOPE * (w[1][0] - w[0][0]).abs())
+        .map(|w| w[0][0] + (w[1][0] - w[0][0]) * (depth - w[0][1]) / (w[1][1] - w[0][1]))
+        .reduce(f64::max)
+}
+
 /// Adds a fault where the flanges do not fit between the rails, or where with one flange on its rail the other wheel's rim ends within
 /// the gauge: that wheel has nothing under it.
 ///
 /// The flange is taken at the depth at which the gauge is measured, the wheelset level. A wheel without a flange that deep is not
 /// judged: nothing stops its shift.
 pub(super) fn faults(wheel: &Profile, p: &Placement, faults: &mut Vec<Fault>) {
-    let depth = p.gauge_point_depth;
-    let flange = wheel
-        .points
-        .windows(2)
-        .filter(|w| w[0][0] < 0.0 && (w[0][1] - depth) * (w[1][1] - depth) <= 0.0)
-        .filter(|w| (w[1][1] - w[0][1]).abs() > FLANGE_SLOPE * (w[1][0] - w[0][0]).abs())
-        .map(|w| w[0][0] + (w[1][0] - w[0][0]) * (depth - w[0][1]) / (w[1][1] - w[0][1]))
-        .fold(f64::NEG_INFINITY, f64::max);
     let rim = wheel.points.iter().map(|point| point[0]).fold(f64::NEG_INFINITY, f64::max);
-    if !flange.is_finite() {
-        return;
-    }
+    let Some(flange) = flange(wheel, p.gauge_point_depth) else { return };
     let least = 2.0 * (p.tape_half_distance + flange);
     let most = 2.0 * p.tape_half_distance + flange + rim;
     let found = if p.gauge < least {

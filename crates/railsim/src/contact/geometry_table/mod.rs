@@ -37,6 +37,7 @@
 
 mod build;
 mod gauge;
+mod grid;
 mod seam;
 pub mod store;
 
@@ -46,6 +47,7 @@ pub use store::{Pair, Tables};
 use crate::contact::hertz;
 use crate::contact::profile::Profile;
 use crate::contact::search::VIRTUAL;
+use grid::Shifts;
 
 /// Contact angle of the wheel up to which it is all tread, rad.
 pub const BLEND_FROM: f64 = 0.15;
@@ -68,16 +70,21 @@ pub const LEAST_CURVATURE: f64 = 0.5;
 
 /// Most contacts of one wheel that a table gives: three places at once are the most that was met; one of them in a blend counts twice.
 pub const MAX_CONTACTS: usize = 4;
-/// Greatest shift either way, m.
+/// Least reach of a table either way, and how far inward its nodes are [`SHIFT_STEP`] apart, m.
 pub const SHIFT_RANGE: f64 = 0.020;
 /// Step of the shift, m.
 pub const SHIFT_STEP: f64 = 0.1e-3;
+/// Step of the shift inward of [`SHIFT_RANGE`], where a wheel stands on the outer part of its tread, m.
+pub const INWARD_STEP: f64 = 0.5e-3;
+/// Furthest that a table reaches inward, m, however wide the wheel is drawn.
+pub const MOST_INWARD: f64 = 0.1;
+/// How far beyond flange contact a table reaches outward, m.
+pub const OUTWARD_MARGIN: f64 = 0.010;
 /// Greatest roll either way, rad.
 pub const ROLL_RANGE: f64 = 0.020;
 /// Step of the roll, rad: the bilinear error of the gap is R step^2/8, 0.15 um for R 300 mm.
 pub const ROLL_STEP: f64 = 2e-3;
 
-const SHIFTS: usize = 401;
 const ROLLS: usize = 21;
 
 /// How wheel and rail are placed against each other, and what they are made of.
@@ -168,8 +175,10 @@ pub struct ContactPoint {
 /// The wheel has left the table: shift or roll beyond its range, or not a number.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "wheel outside the contact table: shift {:.2} mm (+-20), roll {:.2} mrad (+-20), or standing on the end of a profile",
+    "wheel outside the contact table: shift {:.2} mm ({:.1} to {:.1}), roll {:.2} mrad (+-20), or standing on the end of a profile",
     1e3 * dy,
+    1e3 * reach[0],
+    1e3 * reach[1],
     1e3 * roll
 )]
 pub struct OutOfTable {
@@ -177,6 +186,8 @@ pub struct OutOfTable {
     pub dy: f64,
     /// Roll asked for, rad.
     pub roll: f64,
+    /// Least and greatest shift of the table, m.
+    pub reach: [f64; 2],
 }
 
 /// Gaps of a node, apart from the rest so that a wheel in the air or off the flange costs four numbers.
@@ -199,6 +210,7 @@ pub struct GeometryTable {
     rail_origin_y: f64,
     rail: Profile,
     flange_angle: f64,
+    shifts: Shifts,
     /// [roll][shift]
     gaps: Vec<Gaps>,
     values: [Vec<Values>; 2],
@@ -237,13 +249,15 @@ const NO_RAIL: f64 = 0.2;
 #[derive(Clone, Copy)]
 struct Place {
     node: usize,
+    /// Nodes from one roll to the next.
+    row: usize,
     weights: [f64; 4],
 }
 
 impl Place {
     #[inline(always)]
     fn nodes(&self) -> [usize; 4] {
-        [self.node, self.node + 1, self.node + SHIFTS, self.node + SHIFTS + 1]
+        [self.node, self.node + 1, self.node + self.row, self.node + self.row + 1]
     }
 }
 
@@ -273,18 +287,30 @@ impl GeometryTable {
         &self.rail
     }
 
+    /// Least and greatest shift that the table knows, m: inward (negative) to where the end of the wheel's rim stands over the top of the
+    /// rail, so that any widening at which the wheelset does not fall in is in it; outward past flange contact.
+    #[must_use]
+    pub fn reach(&self) -> [f64; 2] {
+        self.shifts.reach()
+    }
+
+    fn out(&self, dy: f64, roll: f64) -> OutOfTable {
+        OutOfTable { dy, roll, reach: self.reach() }
+    }
+
     #[inline(always)]
     fn place(&self, dy: f64, roll: f64) -> Result<Place, OutOfTable> {
-        let x = (dy + SHIFT_RANGE) * (1.0 / SHIFT_STEP);
         let r = (roll + ROLL_RANGE) * (1.0 / ROLL_STEP);
-        let (last_x, last_r) = ((SHIFTS - 1) as f64, (ROLLS - 1) as f64);
-        if !(x >= 0.0 && x <= last_x && r >= 0.0 && r <= last_r) {
-            return Err(OutOfTable { dy, roll });
+        if !(r >= 0.0 && r <= (ROLLS - 1) as f64) {
+            return Err(self.out(dy, roll));
         }
-        let (i, j) = ((x as usize).min(SHIFTS - 2), (r as usize).min(ROLLS - 2));
-        let (u, v) = (x - i as f64, r - j as f64);
+        let (i, u) = self.shifts.place(dy).ok_or_else(|| self.out(dy, roll))?;
+        let j = (r as usize).min(ROLLS - 2);
+        let v = r - j as f64;
+        let row = self.shifts.count();
         Ok(Place {
-            node: j * SHIFTS + i,
+            node: j * row + i,
+            row,
             weights: [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v],
         })
     }
@@ -328,13 +354,13 @@ impl GeometryTable {
         let mut count = 0;
         for (zone, names) in ZONES.into_iter().enumerate() {
             if let Some(parts) = &self.split[zone] {
-                count = split(parts, names, &place, dz, yaw, out, count).ok_or(OutOfTable { dy, roll })?;
+                count = split(parts, names, &place, dz, yaw, out, count).ok_or_else(|| self.out(dy, roll))?;
                 continue;
             }
             let penetration = dz - gaps.gap[zone] + gaps.yaw[zone] * yaw * yaw;
             if penetration > 0.0 {
                 let v = values_at(&self.values[zone], &place);
-                count = add(names[0], penetration, v, yaw, out, count).ok_or(OutOfTable { dy, roll })?;
+                count = add(names[0], penetration, v, yaw, out, count).ok_or_else(|| self.out(dy, roll))?;
             }
         }
         Ok(count)
@@ -364,7 +390,7 @@ impl GeometryTable {
         let (zone, name) = if gap[0] <= gap[1] { (0, Zone::Tread) } else { (1, Zone::Flange) };
         let values = values_at(&self.values[zone], &place);
         if values[0].is_nan() {
-            return Err(OutOfTable { dy, roll });
+            return Err(self.out(dy, roll));
         }
         Ok(point(name, 0.0, &values))
     }

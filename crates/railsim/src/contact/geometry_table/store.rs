@@ -21,6 +21,8 @@ pub struct Pair {
     pub rail: Vec<[f64; 2]>,
     /// How they are placed.
     pub placement: Placement,
+    /// Normal interpenetration of its averages, m.
+    pub penetration: f64,
 }
 
 /// The place of one table; whoever is first builds it while others wait for it.
