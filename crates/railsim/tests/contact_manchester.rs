@@ -6,7 +6,7 @@ mod common;
 use railsim::KeyPath;
 use railsim::contact::creep::{CreepForce, CreepLaw, Creepage, Fastsim, Patch as Ellipse};
 use railsim::contact::geometry_table::{ContactPoint, GeometryTable, MAX_CONTACTS, Placement};
-use railsim::contact::profile::{Profile, ProfileKind, read_csv};
+use railsim::contact::profile::{Profile, ProfileKind};
 use railsim::contact::search::{Patch, Pose, RailShift, Side};
 use railsim::dynamics::compile::geometry_table;
 use serde_json::{Value, json};
@@ -44,13 +44,7 @@ fn uic60() -> Vec<[f64; 2]> {
 }
 
 fn profiles() -> (Profile, Profile) {
-    let root = env!("CARGO_MANIFEST_DIR");
-    let wheel = std::fs::read_to_string(format!("{root}/../../models/profiles/s1002.csv")).unwrap();
-    let points = read_csv(&wheel, "s1002").unwrap();
-    (
-        Profile::new(&points, ProfileKind::Wheel, &KeyPath::of("w")).unwrap(),
-        Profile::new(&uic60(), ProfileKind::Rail, &KeyPath::of("r")).unwrap(),
-    )
+    (common::contact::wheel("s1002"), Profile::new(&uic60(), ProfileKind::Rail, &KeyPath::of("r")).unwrap())
 }
 
 /// One row of the reference, in side coordinates and our signs; m, rad, N.
