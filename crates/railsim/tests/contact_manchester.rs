@@ -355,8 +355,6 @@ fn averages_are_of_the_load_that_is_asked_for() {
     let mut value = wheelset_case();
     value["vehicle"]["contact"]["averaging_load"] = json!(4.0 * LOAD);
     let table = geometry_table(&common::case(&value)).unwrap();
-    let (wheel, rail) = profiles();
-    assert_eq!(table, GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap());
     let within = judge("table of 40 kN", |row| by_table(&table, row));
     assert!(within[0] < 20 && within[1] < 18);
 }
