@@ -129,6 +129,7 @@ def _resolve(document: toml.Document, overrides: Mapping[str, Any], condition: s
         design_condition=resolved.get("design_condition"),
         mass=resolved.get("mass"),
         bodies=tuple(resolved.get("bodies", ())),
+        model=resolved.get("model", {}),
     )
 
 

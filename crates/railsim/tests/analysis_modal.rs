@@ -64,7 +64,6 @@ fn model(bodies: Vec<RigidBody>, wheelsets: Vec<Wheelset>, links: Vec<Link>, gra
         Contact::Textbook(book),
         gravity,
     )
-    .unwrap()
 }
 
 /// Modes with the first body held.

@@ -206,9 +206,7 @@ pub struct Model {
 
 impl Model {
     /// Puts the parts together.
-    ///
-    /// # Errors
-    /// None yet beyond those of the parts; kept fallible for checks across parts.
+    #[must_use]
     #[allow(clippy::too_many_arguments)] // the one place where all parts meet
     pub fn new(
         bodies: Vec<RigidBody>,
@@ -221,7 +219,7 @@ impl Model {
         support: Option<Support>,
         contact: Contact,
         gravity: f64,
-    ) -> Result<Self> {
+    ) -> Self {
         links.sort_by_key(|l| (l.a, l.b));
         let mut map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len(), memory: 0 };
         let first = map.size();
@@ -236,7 +234,7 @@ impl Model {
                 StiffBlock { pos: start..start + 9, vel: start + 9..start + 18 }
             })
             .collect();
-        Ok(Self {
+        Self {
             bodies,
             wheelsets,
             links,
@@ -252,7 +250,7 @@ impl Model {
             equipment: None,
             stiff_blocks,
             memory: map.memory,
-        })
+        }
     }
 
     /// Layout of the state.
@@ -289,5 +287,11 @@ impl Model {
     #[must_use]
     pub fn reference(&self) -> usize {
         self.speed_hold.map_or(0, |h| h.body)
+    }
+
+    /// Place of the vehicle's centre along the track in state `x`, m: where the reference body would be if it stood there.
+    #[must_use]
+    pub fn place(&self, x: &[f64]) -> f64 {
+        x[self.map().q(self.reference()).start] - self.rigid(self.reference()).position.x
     }
 }
