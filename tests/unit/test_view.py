@@ -217,7 +217,7 @@ def test_a_body_off_the_middle_is_asymmetric_by_twice_its_offset() -> None:
 
 
 def test_an_attachment_far_off_is_found_with_its_body() -> None:
-    text = SMALL.replace('["{sign}$spring.y", 0.0, -0.7]', "[0.0, 0.0, 3.0]")
+    text = SMALL.replace('["{sign}$spring.y", 0.0, -0.7]', '["{sign}$spring.y", 0.0, 3.0]')
     kinds = found(text)
     assert kinds == [("outside", "rod_ws1.carbody"), ("outside", "rod_ws2.carbody")]
 

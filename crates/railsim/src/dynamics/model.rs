@@ -11,7 +11,6 @@ use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
 use crate::equipment::Equipment;
-use crate::error::Result;
 use crate::integrator::StiffBlock;
 use crate::math::{Mat3, Vec3};
 use crate::track::DeviationField;

@@ -97,14 +97,15 @@ impl Document {
             }
         }
         let numbers = parameter::evaluate(&parameters, faults);
-        let (elements, spare) = template::expand(&self.root, &numbers, &parameters, faults);
+        let (mut elements, spare) = template::expand(&self.root, &numbers, &parameters, faults);
         let mut whole = self.root.clone();
         if let Value::Table(map) = &mut whole.value {
             for key in ["parameters", "condition", "template", "use"].iter().chain(&KINDS) {
                 map.remove(*key);
             }
             map.values_mut().for_each(|item| parameter::resolve(item, &numbers, &parameters, faults));
-            for (kind, items) in elements {
+            for kind in KINDS {
+                let items = elements.remove(kind).unwrap_or_default();
                 let list = Node { at: self.root.at.key(kind), via: None, value: Value::List(items) };
                 map.insert(kind.to_owned(), list);
             }
