@@ -143,7 +143,7 @@ fn textbook(axles: &[f64], stiffness: f64, conicity: f64, radius: f64, f: [f64; 
     value
 }
 
-/// Redtenbacher: a free wheelset runs outward by y = r0 l0/(lambda R).
+/// A free wheelset runs outward by y = r0 l0/(lambda R) (F. Redtenbacher, Die Gesetze des Locomotiv-Baues, 1855).
 #[test]
 fn redtenbacher_offset_of_a_free_wheelset() {
     for (conicity, radius) in [(0.05, 2000.0), (0.1, 1000.0), (0.15, 800.0)] {

@@ -70,7 +70,7 @@ pub fn model(case: &Case) -> Result<Model> {
         support(track),
         contact,
         case.run.gravity,
-    )?;
+    );
     model.guided = guided(vehicle);
     model.gaps = gaps(vehicle)?;
     model.equipment = equipment(case, &model)?.map(Box::new);
