@@ -282,7 +282,10 @@ def _span(curves: Sequence[Curve]) -> list[float] | None:
     drawn = [curve.t for curve in curves if len(curve.t)]
     if not drawn:
         return None
-    return [float(min(t[0] for t in drawn)), float(max(t[-1] for t in drawn))]
+    first, last = float(min(t[0] for t in drawn)), float(max(t[-1] for t in drawn))
+    return (
+        [first, last] if last > first else [first - 0.5, last + 0.5]
+    )  # one row: its limits are lines all the same
 
 
 def _range(view: View) -> list[float] | None:
