@@ -80,6 +80,9 @@ ROOT = Path(__file__).resolve().parents[2]
         ("twist", {"test.loops": ["all"]}, "test.loops"),
         ("p2", {"test.dip_angle": -0.01}, "test.dip_angle"),
         ("axle_loads", {"test.worn": 1.0}, "worn_diameter"),
+        ("coupler_forces", {"test.ways": []}, "ways or stepped"),
+        ("coupler_forces", {"test.stepped": [{"label": "x"}]}, "shank"),
+        ("coupler_forces_run", {"test.shank": 0.0}, "test.shank: found 0"),
     ],
 )
 def test_bad_input_is_one_message_each(
