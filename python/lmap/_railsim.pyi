@@ -153,7 +153,8 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
 
     `overrides_json` is an object of dotted parameter names and values. The answer has `document` (with the
     overrides in it), `name`, `title`, `design_speed` (m/s), `wheel_radius` (m), `wheel_profile`, `track`,
-    `conditions`, `design_condition`, `mass` (kg) and `bodies`. `InputError` with every fault.
+    `conditions`, `design_condition`, `mass` (kg), `bodies` and `model`: the vehicle with its templates copied, its
+    references replaced and its mirrored elements made. `InputError` with every fault.
     """
 
 def vehicle_schema() -> str:

@@ -270,14 +270,19 @@ def report_folder(given: str | Path, option: str = "--report") -> Path:
 
 def write_page(path: Path, content: bytes) -> None:
     """One page, whole or not at all; its folder is made where it is missing."""
-    created: list[Path] = []
-    try:
+    with _new_folders(f"the page cannot be written to {files.shown(path)}") as created:
         _make_folder(path.parent, created)
         files.write(path, content)
+
+
+@contextlib.contextmanager
+def _new_folders(trouble: str) -> Iterator[list[Path]]:
+    """A list for folders that are made, of which those that stay empty are removed; what fails is told as `trouble`."""
+    created: list[Path] = []
+    try:
+        yield created
     except OSError as error:
-        raise LmapError(
-            f"the page cannot be written to {files.shown(path)}: {error.strerror or error}"
-        ) from error
+        raise LmapError(f"{trouble}: {error.strerror or error}") from error
     finally:
         for one in reversed(created):
             with contextlib.suppress(OSError):  # what holds something stays
@@ -293,8 +298,7 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
     """
     from lmap.report import write_report as write
 
-    created: list[Path] = []
-    try:
+    with _new_folders(f"the report cannot be written to {files.shown(folder)}") as created:
         _make_folder(folder, created)
         partial = Path(tempfile.mkdtemp(prefix=".report.", suffix=".partial", dir=folder))
         try:
@@ -307,14 +311,6 @@ def write_report(acceptance: Acceptance, folder: Path) -> None:
             _remove_cases(folder / "cases", keep={path.name for path in made})
         finally:
             shutil.rmtree(partial, ignore_errors=True)
-    except OSError as error:
-        raise LmapError(
-            f"the report cannot be written to {files.shown(folder)}: {error.strerror or error}"
-        ) from error
-    finally:
-        for one in reversed(created):
-            with contextlib.suppress(OSError):  # what holds something stays
-                one.rmdir()
 
 
 def _remove_cases(folder: Path, keep: builtins.set[str]) -> None:

@@ -162,6 +162,7 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
         procedure=spec.procedure,
         vehicle=prepared.vehicle.data.name,
         condition=spec.condition or "",
+        assumed=spec.assumed or "",
         outcome=outcome_of(judged.criteria),
         criteria=judged.criteria,
         facts=prepared.facts,

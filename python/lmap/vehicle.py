@@ -129,6 +129,7 @@ def _resolve(document: toml.Document, overrides: Mapping[str, Any], condition: s
         design_condition=resolved.get("design_condition"),
         mass=resolved.get("mass"),
         bodies=tuple(resolved.get("bodies", ())),
+        model=resolved.get("model", {}),
     )
 
 
@@ -166,6 +167,12 @@ def unreadable(
     except railsim.InputError as error:
         raise InputProblem(toml.problems_of_core(error)) from None
     found: list[dict[str, Any]] = json.loads(text)
+    # What is wrong with an override is no fault of the file.
+    given = [one for one in found if one["path"][:1] == ["set"]]
+    if given:
+        raise InputProblem(
+            [Problem(key=tuple(one["path"]), found=one["found"], allowed=one["usual"]) for one in given]
+        )
     return found
 
 

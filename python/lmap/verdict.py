@@ -192,12 +192,13 @@ class Extent:
     simulated: float | None
     """s, from the first to the last row; none without a column `t`."""
     distance: float | None
-    """m."""
+    """m; none where nothing runs in time: a vehicle that is pushed gives way along the track too."""
 
     @staticmethod
     def of(frame: pl.DataFrame) -> Extent:
         """Read off a frame."""
-        return Extent(frame.height, _span(frame, "t"), _span(frame, "s"))
+        simulated = _span(frame, "t")
+        return Extent(frame.height, simulated, None if simulated is None else _span(frame, "s"))
 
 
 NO_EXTENT = Extent(0, None, None)
@@ -272,6 +273,8 @@ class SpecVerdict:
     inputs: tuple[InputFile, ...] = ()
     overrides: Mapping[str, Any] = field(default_factory=dict)
     """What `[set]` and `--set` changed."""
+    assumed: str = ""
+    """What of the test itself, beside its limits, is assumed, and why."""
     drawing: Mapping[str, Any] | None = None
     """Plain data of the vehicle's 3D page, where the procedure draws one."""
     drawings: tuple[Drawing, ...] = ()

@@ -126,6 +126,7 @@ def test_bad_input(run: Run) -> None:
             "LM77",
         ): 'lmap: --select: found "LM77"; allowed: codes or beginnings of codes: ',
         ("coco134", "--step", "-1"): "lmap: ",
+        ("coco134", "--set", "car.mas=3"): 'lmap: set."car.mas": found the unknown name car.mas; allowed: ',
         ("coco134", "--integrator", "euler"): "lmap: ",
     }
     for arguments, message in messages.items():

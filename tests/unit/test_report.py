@@ -134,7 +134,7 @@ def test_terminal_folds_and_truncates_nothing(width: int) -> None:
         "PASS",
         "0.055",
         "0.059",
-        "assumed limit",
+        "assumed",
         "Nadal",
         "secondary.kz",
         "ros2 0.5 ms",

@@ -342,3 +342,11 @@ def test_failed_writing_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
         write_report(sample.failing(), tmp_path)
     assert (tmp_path / "index.html").read_bytes() == before
     assert not list(tmp_path.rglob("*.tmp"))
+
+
+def test_what_is_assumed_of_the_test_stands_beside_its_verdict() -> None:
+    spec = replace(sample.passing().specs[0], assumed="the radius is ours")
+    text = page(sample.acceptance(spec)).text
+    assert "test assumed" in text
+    assert "the radius is ours" in text
+    assert "test assumed" not in page(sample.passing()).text

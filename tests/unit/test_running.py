@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -65,7 +66,7 @@ def test_more_cant_than_any_speed_asks_for_has_no_speed() -> None:
 @pytest.mark.parametrize("procedure", [speed_range, curves])
 def test_derived_columns_are_those_of_wheels_axles_and_bodies(procedure: Any) -> None:
     channels = {"ws1.left.Q": "N", "ws1.right.Q": "N", "ws1.sum_Y": "N", "bogie1.theta": "rad"}
-    assert set(procedure.derived(None, channels)) == {
+    assert set(procedure.derived(SimpleNamespace(test={}), channels)) == {
         "ws1.prudhomme",
         *(f"ws1.{side}.{part}" for side in ("left", "right") for part in ("unloading", "nadal")),
         *(f"bogie1.{side}.{part}" for side in ("left", "right") for part in ("unloading", "LV")),

@@ -44,8 +44,8 @@ def edited(old: str, new: str) -> str:
             'vehicle = "toy"',
             'vehicel = "toy"',
             (
-                '4: vehicel: found an unknown key "vehicel"; allowed: condition, criterion, id, procedure, run, '
-                'set, sign_off, test, title, track, vehicle (did you mean "vehicle"?)'
+                '4: vehicel: found an unknown key "vehicel"; allowed: assumed, condition, criterion, id, procedure, '
+                'run, set, sign_off, test, title, track, vehicle (did you mean "vehicle"?)'
             ),
         ),
         (

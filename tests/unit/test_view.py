@@ -16,6 +16,7 @@ from lmap.report.scene import file_name, render_scene
 from lmap.spec.case import VehicleData
 from lmap.spec.load import load
 from lmap.spec.model import SignOff
+from lmap.vehicle import Vehicle
 from lmap.verdict import Outcome
 from lmap.view import (
     Mode,
@@ -32,13 +33,20 @@ from lmap.view.checks import LIMITS, measures
 from lmap.view.model import Body
 from lmap.view.shapes import Box, Cylinder, Line, box_of_inertia, outside, shapes
 
+pytestmark = pytest.mark.needs_core
 ROOT = Path(__file__).parents[2]
 GAUGE = 1.435
 
 SMALL = """
 name = "small"
 title = "Two axles"
+design_speed_kmh = 108.0
+wheel_profile = "s1002"
 design_condition = "full"
+[contact]
+youngs_modulus = 2.1e11
+poisson = 0.28
+damping = 1e5
 [parameters.car]
 mass = 12000.0
 length = 8.0
@@ -92,22 +100,7 @@ position = [3.0, 1.0, -1.2]
 
 
 def vehicle(text: str = SMALL, condition: str | None = None) -> VehicleData:
-    document = tomllib.loads(text)
-    return VehicleData(
-        file="small.toml",
-        document=document,
-        name=document["name"],
-        title=document["title"],
-        design_speed=30.0,
-        wheel_radius=0.5,
-        wheel_profile=None,
-        track=None,
-        condition=condition,
-        conditions=("full", "tare"),
-        design_condition="full",
-        mass=None,
-        bodies=(),
-    )
+    return Vehicle.of(text, condition=condition).data
 
 
 def found(text: str) -> list[tuple[str, str]]:
@@ -138,7 +131,6 @@ def test_a_condition_changes_what_it_names() -> None:
     assert masses == [12000.0, 12000.0, 8000.0]
 
 
-@pytest.mark.needs_core
 def test_the_reference_locomotive_is_the_cores() -> None:
     import lmap
 
@@ -225,7 +217,7 @@ def test_a_body_off_the_middle_is_asymmetric_by_twice_its_offset() -> None:
 
 
 def test_an_attachment_far_off_is_found_with_its_body() -> None:
-    text = SMALL.replace('["{sign}$spring.y", 0.0, -0.7]', "[0.0, 0.0, 3.0]")
+    text = SMALL.replace('["{sign}$spring.y", 0.0, -0.7]', '["{sign}$spring.y", 0.0, 3.0]')
     kinds = found(text)
     assert kinds == [("outside", "rod_ws1.carbody"), ("outside", "rod_ws2.carbody")]
 
@@ -333,7 +325,6 @@ def test_a_sign_off_of_this_model_passes_and_says_whose_it_is() -> None:
         ),
     ],
 )
-@pytest.mark.needs_core
 def test_a_faulty_sign_off_is_one_message_with_key_and_line(
     tmp_path: Path, written: str, message: str
 ) -> None:

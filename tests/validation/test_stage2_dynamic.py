@@ -142,3 +142,31 @@ def test_rollover_is_that_of_the_rigid_vehicle_its_lean_and_its_spinning_axles(c
         "a h/(g b), lean, spin",
     )
     assert rigid < ours < 1.5 * rigid  # the rigid vehicle's 14.7 %, and what is above
+
+
+HALVED: dict[str, tuple[dict[str, Any], float]] = {
+    "rollover": (
+        {"test.curves": [{"radius_m": 400.0, "cant_mm": 100.0, "unbalanced": 0.72}]},
+        0.0005,
+    ),
+    "small_curve": ({"run.wheel_profile": ["anzr1"]}, 0.0005),
+    "vertical_hump": ({}, 0.001),
+    "vertical_dip": ({}, 0.001),
+}
+"""Settings that leave one run of a spec, and the step that it writes."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HALVED)
+def test_halving_the_step_moves_no_judged_value_by_one_per_cent(name: str, compare: Compare) -> None:
+    settings, step = HALVED[name]
+
+    def values(written: float) -> dict[tuple[str, str], float]:
+        [spec] = lmap.check(SPECS / f"{name}.toml", set={**settings, "run.integrator.step": written}).specs
+        judged = [one for one in spec.criteria if one.judged and one.value is not None]
+        return {(one.name, one.case): float(one.value or 0.0) for one in judged}
+
+    halved = values(step / 2.0)
+    assert halved
+    for key, value in values(step).items():
+        compare(f"{name}: {key[0]}", value, halved[key], 0.01 * abs(halved[key]), "half the step")

@@ -145,6 +145,23 @@ def test_x_factor_of_a_linear_bogie(radius: float, x: float, compare: Compare) -
     compare(f"X factor, R {radius:g} m", moment / (3.8 * 2.0 * WHEEL_LOAD), x, 0.001, ANNEX_E)
 
 
+def test_the_moment_in_a_curve_hangs_on_the_angle_alone(compare: Compare) -> None:
+    """What (a) of 2C.4b rests on: 20 mm of sway beside 36 mrad of yaw leave the moment of the loop as it is."""
+    angle = 0.036
+
+    def moment(across: float) -> float:
+        load = [
+            {"kind": "displacement", "coordinate": f"bogie1.{part}", "path": [0.0, value]}
+            for part, value in (("psi", angle), ("y", across))
+        ]
+        held = [f"carbody.{part}" for part in ("x", "y", "z", "phi", "theta", "psi")]
+        run = {"kind": "quasi_static", "speed": 0.0, "contact": ROLLERS, "load": load, "load_steps": 1}
+        return float(abs(ran(run | {"hold": held})["bogie1.psi.reaction_moment"][-1]))
+
+    compare("moment with sway, kN m", moment(0.02) / 1e3, moment(0.0) / 1e3, 0.2, "the same without")
+    compare("moment, kN m", moment(0.0) / 1e3, 1147.5 * angle, 0.3, "the secondary springs")
+
+
 def test_yaw_dampers_add_their_share_at_a_degree_per_second(compare: Compare) -> None:
     slow = judged("bogie_rotation", **{"test.rate": 0.0})
     stated = judged("bogie_rotation")

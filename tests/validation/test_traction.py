@@ -205,6 +205,9 @@ def test_sand_comes_and_goes_after_its_delay(compare: Compare) -> None:
         "until": {"time": 12.0},
     }
     frame = run("wet", drive)
+    sanded = frame.filter(frame["traction.sanding"] > 1.0)["t"]
+    compare("sand comes, s", float(sanded[0]), 9.0, 0.02, "demand and delay")
+    compare("sand goes, s", float(sanded[-1]), 11.0, 0.03, "demand and delay")
     wet, dry_sand, last = (mean(frame, "ws1.slip", *w) for w in ((8.5, 8.98), (9.2, 10.98), (11.5, 12.0)))
     # The same effort with more friction: less slip, and back again.
     compare("slip before sand, over slip after it", wet / last, 1.0, 0.01, "the same rail")
@@ -232,7 +235,7 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
     frames = {case.label: case.frame for case in spec.cases}
     radius, length = 160.0, 22.0
     # While vehicle and neighbour stand in the first curve, 60 to 110 m, with all their bogies. L/2R is for a body
-    # on its chord; ours stands beside that, by `aside` at the coupler's pivot, which is 1.5 m from the neighbour's.
+    # on its chord; ours stands beside that, by `aside` at the coupler's pivot, which is 1.6 m from the neighbour's.
     for end, begin, last in ((1, 70.0, 80.0), (-1, 92.0, 102.0)):
         name = {1: "front", -1: "rear"}[end]
         for way in ("draft", "buff"):
@@ -240,8 +243,8 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
                 mean_at(frames[way], channel, begin, last)
                 for channel in ("carbody.y", "carbody.phi", "carbody.psi", f"coupler.{name}.angle")
             )
-            aside = y - 1.05 * phi - 13.2**2 / (8 * radius) + end * (length / 2 - 0.75) * psi
-            closed = length / (2 * radius) - aside / 1.5 - end * psi
+            aside = y - 1.05 * phi - 13.2**2 / (8 * radius) + end * (length / 2 - 0.8) * psi
+            closed = length / (2 * radius) - aside / 1.6 - end * psi
             what = f"angle of the {name} coupler, {way}, mrad"
             compare(what, 1e3 * angle, 1e3 * closed, 2.0, "L/2R with the body where it stands")
     train = frames["train, hauling"]

@@ -143,7 +143,7 @@ fn textbook(axles: &[f64], stiffness: f64, conicity: f64, radius: f64, f: [f64; 
     value
 }
 
-/// Redtenbacher: a free wheelset runs outward by y = r0 l0/(lambda R).
+/// A free wheelset runs outward by y = r0 l0/(lambda R) (F. Redtenbacher, Die Gesetze des Locomotiv-Baues, 1855).
 #[test]
 fn redtenbacher_offset_of_a_free_wheelset() {
     for (conicity, radius) in [(0.05, 2000.0), (0.1, 1000.0), (0.15, 800.0)] {
@@ -473,12 +473,33 @@ fn a_gauge_widened_by_the_layout_is_the_wider_gauge() {
         let outcome = run(&common::case(&value), &Free).unwrap();
         ["ws1.y", "ws1.left.Y", "ws1.right.Y", "ws3.y"].map(|name| row(&outcome, name, 0))
     };
-    let (plain, wide, own) = (balance(1.435, 0.0), balance(1.435, 8.0), balance(1.443, 0.0));
-    println!("1435 mm {plain:?}, widened by 8 mm {wide:?}, 1443 mm {own:?}");
-    // The leading axle runs 4 mm further out to its rail.
-    assert!((wide[0] - plain[0]).abs() > 3e-3);
-    for (a, b) in wide.iter().zip(own) {
-        // Two tables, each 0.1 mm from node to node, built about different places.
-        assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+    let plain = balance(1.435, 0.0);
+    for widening in [8.0, 30.0] {
+        let (wide, own) = (balance(1.435, widening), balance(1.435 + 1e-3 * widening, 0.0));
+        println!("1435 mm {plain:?}, widened by {widening} mm {wide:?}, as wide by itself {own:?}");
+        // The leading axle runs half the widening further out to its rail.
+        assert!((wide[0] - plain[0]).abs() > 0.375e-3 * widening);
+        for (a, b) in wide.iter().zip(own) {
+            // Two tables, built about different places; with 30 mm the inner wheel stands where one has its nodes 0.5 mm apart.
+            assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+        }
     }
+}
+
+/// A wheelset with a flange on its rail leaves the other wheel 37 mm inward of its place: no derailment.
+#[test]
+fn a_curve_widened_by_thirty_millimetres_is_run_through() {
+    let mut value = common::coco134();
+    let curve = json!({ "kind": "curve", "length": 30.0, "radius": 300.0, "widening_mm": 30.0 });
+    value["track"]["layout"] =
+        json!([{ "kind": "tangent", "length": 30.0 }, { "kind": "clothoid", "length": 30.0 }, curve]);
+    value["track"]["length"] = json!(90.0);
+    value["run"]["speed"] = json!(10.0);
+    let outcome = run(&common::case(&value), &Free).unwrap();
+    assert_eq!(outcome.ended, Ended::EndOfTrack);
+    let (y, outer) =
+        (common::column(&outcome.columns, "ws1.y"), common::column(&outcome.columns, "ws1.left.Y"));
+    let (last, force) = (y[y.len() - 1], outer[outer.len() - 1]);
+    println!("leading wheelset {:.1} mm outward, {:.1} kN on its outer rail", -1e3 * last, 1e-3 * force);
+    assert!(-last > 0.020);
 }

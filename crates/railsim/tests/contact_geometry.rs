@@ -1,48 +1,26 @@
 //! Contact geometry: closed forms on simple shapes, the shipped pairs, continuity, and the table against a direct search.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod common;
+
+use common::contact::{PLACEMENT, as60, wheel};
 use proptest::prelude::*;
 use railsim::KeyPath;
 use railsim::contact::geometry_table::{
     ContactPoint, GeometryTable, MAX_CONTACTS, OutOfTable, PENETRATION, Placement, Zone,
 };
-use railsim::contact::profile::{Profile, ProfileKind, read_csv};
+use railsim::contact::profile::{Profile, ProfileKind};
 use railsim::contact::search::{Pose, RailShift, Side, VIRTUAL};
 use std::sync::LazyLock;
 
-const PLACEMENT: Placement = Placement {
-    gauge: 1.435,
-    gauge_point_depth: 0.016,
-    rail_inclination: 0.05,
-    tape_half_distance: 0.750,
-    wheel_radius: 0.460,
-    youngs_modulus: 210e9,
-    poisson: 0.28,
-};
-
-fn shipped(name: &str, kind: ProfileKind) -> Profile {
-    let path = format!("{}/../../models/profiles/{name}.csv", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap();
-    let points = read_csv(&text, name).unwrap();
-    Profile::new(&points, kind, &KeyPath::of("profiles").key(name).key("points")).unwrap()
-}
-
-fn as60() -> Profile {
-    shipped("as60", ProfileKind::Rail)
-}
-
-static ANZR1: LazyLock<GeometryTable> = LazyLock::new(|| {
-    GeometryTable::build(&shipped("anzr1", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
-});
-static WORN_2: LazyLock<GeometryTable> = LazyLock::new(|| {
-    GeometryTable::build(&shipped("anzr1_worn_2", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
-});
-static WORN_HIGH: LazyLock<GeometryTable> = LazyLock::new(|| {
-    GeometryTable::build(&shipped("anzr1_worn_high", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
-});
-static S1002: LazyLock<GeometryTable> = LazyLock::new(|| {
-    GeometryTable::build(&shipped("s1002", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap()
-});
+static ANZR1: LazyLock<GeometryTable> =
+    LazyLock::new(|| GeometryTable::build(&wheel("anzr1"), &as60(), &PLACEMENT).unwrap());
+static WORN_2: LazyLock<GeometryTable> =
+    LazyLock::new(|| GeometryTable::build(&wheel("anzr1_worn_2"), &as60(), &PLACEMENT).unwrap());
+static WORN_HIGH: LazyLock<GeometryTable> =
+    LazyLock::new(|| GeometryTable::build(&wheel("anzr1_worn_high"), &as60(), &PLACEMENT).unwrap());
+static S1002: LazyLock<GeometryTable> =
+    LazyLock::new(|| GeometryTable::build(&wheel("s1002"), &as60(), &PLACEMENT).unwrap());
 
 fn one(table: &GeometryTable, dy: f64, roll: f64, load_depth: f64) -> Vec<ContactPoint> {
     let gap = table.gap(dy, roll).unwrap();
@@ -95,7 +73,7 @@ fn cone_on_round_rail_closed_form() {
 fn anzr1_on_as60_conicity_and_flange_play() {
     // the radius of coco134 and the gauge at 14 mm are what the published figures belong to
     let placement = Placement { wheel_radius: 0.5335, gauge_point_depth: 0.014, ..PLACEMENT };
-    let pair = GeometryTable::build(&shipped("anzr1", ProfileKind::Wheel), &as60(), &placement).unwrap();
+    let pair = GeometryTable::build(&wheel("anzr1"), &as60(), &placement).unwrap();
     for millimetres in 1..=6 {
         let conicity = pair.equivalent_conicity(1e-3 * f64::from(millimetres)).unwrap();
         println!("anzr1/as60 equivalent conicity at {millimetres} mm: {conicity:.4} (0.0529)");
@@ -130,8 +108,7 @@ fn shipped_pairs_have_the_conicity_this_readme_states() {
         if stated.len() != 3 {
             continue;
         }
-        let table =
-            GeometryTable::build(&shipped(cells[0], ProfileKind::Wheel), &as60(), &placement).unwrap();
+        let table = GeometryTable::build(&wheel(cells[0]), &as60(), &placement).unwrap();
         for (amplitude, stated) in [1e-3, 3e-3, 5e-3].into_iter().zip(stated) {
             let ours = table.equivalent_conicity(amplitude).unwrap();
             println!("{} at {amplitude} m: {ours:.4} ({stated})", cells[0]);
@@ -168,7 +145,7 @@ fn table_against_direct_search() {
         ("anzr1_worn_high", &*WORN_HIGH, 1e-5),
         ("s1002", &*S1002, 3e-5),
     ] {
-        let wheel = shipped(name, ProfileKind::Wheel);
+        let wheel = common::contact::wheel(name);
         let mut worst = (0.0_f64, 0.0, 0.0);
         let mut all = Vec::new();
         for i in 0..30 {
@@ -238,15 +215,18 @@ fn zones_are_cut_where_a_pair_touches_twice_in_them() {
     }
 }
 
-/// S1002 on 1:20, where two places of the tread and the flange root carry at once: three contacts where direct search has three patches. The
-/// averages are over one interpenetration, so what hardly touches is averaged too widely, and the second place lies partly within the blend of tread and flange: this is the
-/// pair that a table serves worst (docs/concepts/contact.md).
+/// S1002 on 1:20, where two places of the tread and the flange root carry at once: three contacts where direct search has three patches. This is the
+/// pair that a table serves worst. Nothing here was asked for: what is held is the error that docs/concepts/contact.md states, so that neither it nor the
+/// table changes in silence; and that all three are there.
 #[test]
 fn three_contacts_at_once() {
-    let side = Side::new(&shipped("s1002", ProfileKind::Wheel), &as60(), &PLACEMENT).unwrap();
+    let side = Side::new(&wheel("s1002"), &as60(), &PLACEMENT).unwrap();
     let approach = PENETRATION / VIRTUAL;
     let load = |c: &ContactPoint| c.share * c.hertz * (c.penetration * c.angle.cos()).powf(1.5);
-    let mut threes = 0;
+    // whole load, stiffness of the heaviest contact and its place, against direct search
+    let (mut loads, mut stiffness, mut farthest) =
+        ([f64::INFINITY, 0.0_f64], [f64::INFINITY, 0.0_f64], 0.0_f64);
+    let note = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
     for i in 0..=60 {
         let y = 0.005 + 5e-5 * f64::from(i);
         let pose = Pose { y, ..Pose::default() };
@@ -257,30 +237,38 @@ fn three_contacts_at_once() {
         }
         let mut out = [ContactPoint::default(); MAX_CONTACTS];
         let n = S1002.contacts(y, 0.0, gap + approach, 0.0, &mut out).unwrap();
+        assert!(n >= 3);
         println!("y = {:.2} mm: search, table", 1e3 * y);
         for p in &patches {
-            println!("    {:6.2} mm {:5.1} kN", 1e3 * p.centre.wheel[0], 1e-3 * p.normal);
+            println!(
+                "    {:6.2} mm {:5.1} kN, spread {:.2}",
+                1e3 * p.centre.wheel[0],
+                1e-3 * p.normal,
+                p.spread
+            );
         }
         for c in &out[..n] {
-            println!(
-                "        {:6.2} mm {:5.1} kN {:?} share {:.2}",
-                1e3 * c.y_wheel,
-                1e-3 * load(c),
-                c.zone,
-                c.share
-            );
+            let (place, kn) = (1e3 * c.y_wheel, 1e-3 * load(c));
+            println!("        {place:6.2} mm {kn:5.1} kN {:?} share {:.2}", c.zone, c.share);
         }
         let heaviest = patches.iter().max_by(|p, q| p.normal.total_cmp(&q.normal)).unwrap();
         let main = out[..n].iter().max_by(|p, q| load(p).total_cmp(&load(q))).unwrap();
-        assert!((main.y_wheel - heaviest.centre.wheel[0]).abs() < 4e-3);
-        assert!((load(main) / heaviest.normal - 1.0).abs() < 0.3);
-        let total: f64 = out[..n].iter().map(load).sum();
+        farthest = farthest.max((main.y_wheel - heaviest.centre.wheel[0]).abs());
+        note(&mut stiffness, main.hertz / (heaviest.normal * (-heaviest.deepest.gap).powf(-1.5)));
         let theirs: f64 = patches.iter().map(|p| p.normal).sum();
-        assert!((total / theirs - 1.0).abs() < 0.25, "{total} N, search {theirs}");
-        assert!(n >= 3);
-        threes += 1;
+        note(&mut loads, out[..n].iter().map(load).sum::<f64>() / theirs);
     }
-    assert!(threes > 0);
+    println!(
+        "load {:.2} to {:.2} of direct search's, stiffness of the heaviest contact {:.2} to {:.2}, its place within {:.1} mm",
+        loads[0],
+        loads[1],
+        stiffness[0],
+        stiffness[1],
+        1e3 * farthest
+    );
+    for (ours, stated) in loads.into_iter().chain([1e3 * farthest]).zip([0.78, 0.98, 3.3]) {
+        assert!((ours - stated).abs() < if stated > 1.0 { 0.1 } else { 0.01 }, "{ours}, {stated} is stated");
+    }
 }
 
 #[test]
@@ -296,10 +284,51 @@ fn yaw_closes_the_flange_gap_to_second_order() {
     assert!((flange.penetration - (closed - 1e-4)).abs() < 0.05 * closed);
 }
 
+/// Inward to where the rim ends over the top of the rail, outward 10 mm past flange contact, 20 mm at least.
+#[test]
+fn the_reach_follows_the_pair() {
+    for gauge in [1.435, 1.465] {
+        let wheel = wheel("anzr1");
+        let table = GeometryTable::build(&wheel, &as60(), &Placement { gauge, ..PLACEMENT }).unwrap();
+        let [inward, outward] = table.reach();
+        // the flange face at the depth of the gauge, from the points: where the profile falls through 16 mm
+        let face =
+            wheel.points.iter().filter(|p| p[0] < 0.0 && p[1] <= 0.016).map(|p| p[0]).fold(0.0, f64::min);
+        let clearance = 0.5 * gauge - PLACEMENT.tape_half_distance - face;
+        let nominal = PLACEMENT.tape_half_distance - table.rail_origin_y();
+        let rim = wheel.range().1 + nominal;
+        println!(
+            "{gauge} m: {:.1} to {:.1} mm, clearance {:.1} mm",
+            1e3 * inward,
+            1e3 * outward,
+            1e3 * clearance
+        );
+        assert!(rim + inward >= 0.0 && rim + inward < 0.6e-3);
+        assert!(outward >= (clearance + 0.0095).max(0.02) && outward < (clearance + 0.0115).max(0.0201));
+        // room for 30 mm of widening, the other wheel's flange on its rail
+        assert!(-inward > clearance + if gauge > 1.45 { 0.0 } else { 0.030 });
+    }
+}
+
+/// Inward of 20 mm, on the outer part of the tread, where nodes are half a millimetre apart.
+#[test]
+fn table_of_a_widened_track_against_direct_search() {
+    for (name, table) in [("anzr1", &*ANZR1), ("anzr1_worn_2", &*WORN_2), ("s1002", &*S1002)] {
+        let (wheel, mut worst) = (common::contact::wheel(name), 0.0_f64);
+        for i in 0..40 {
+            let (dy, roll) = (-0.0203 - 0.000_657 * f64::from(i), -0.0031 + 0.0021 * f64::from(i % 4));
+            let gap = table.gap(dy, roll).unwrap();
+            worst = worst.max((gap[0].min(gap[1]) - direct_gap(&wheel, table, dy, roll)).abs());
+        }
+        println!("{name}/as60, 20 to 46 mm inward: largest error of the gap {:.2} um", 1e6 * worst);
+        assert!(worst < 5e-6, "{name}");
+    }
+}
+
 #[test]
 fn leaving_the_table_is_an_error() {
     let mut out = [ContactPoint::default(); MAX_CONTACTS];
-    for (dy, roll) in [(0.0201, 0.0), (0.0, -0.03), (f64::NAN, 0.0)] {
+    for (dy, roll) in [(0.0201, 0.0), (-0.06, 0.0), (0.0, -0.03), (f64::NAN, 0.0)] {
         let refused = ANZR1.contacts(dy, roll, 0.0, 0.0, &mut out);
         assert!(matches!(refused, Err(OutOfTable { .. })));
     }
@@ -309,14 +338,14 @@ fn leaving_the_table_is_an_error() {
 fn profile_that_misses_the_gauge_point_is_refused() {
     let head: Vec<_> = (-200..=200).map(|i| [1e-4 * f64::from(i), 1e-8 / 0.6 * f64::from(i * i)]).collect();
     let rail = Profile::new(&head, ProfileKind::Rail, &KeyPath::of("r")).unwrap();
-    let refused = GeometryTable::build(&shipped("anzr1", ProfileKind::Wheel), &rail, &PLACEMENT);
+    let refused = GeometryTable::build(&wheel("anzr1"), &rail, &PLACEMENT);
     assert!(refused.unwrap_err().to_string().contains("gauge_point_depth"));
 }
 
 proptest! {
     /// Small shifts and rolls change every value a little: no jumps, anywhere in the table.
     #[test]
-    fn table_is_continuous(dy in -0.0199f64..0.0199, roll in -0.0199f64..0.0199, which in 0..2) {
+    fn table_is_continuous(dy in -0.045f64..0.0199, roll in -0.0199f64..0.0199, which in 0..2) {
         let table: &GeometryTable = if which == 0 { &ANZR1 } else { &S1002 };
         let h = 1e-9;
         let mut p = [ContactPoint::default(); MAX_CONTACTS];
@@ -340,7 +369,7 @@ proptest! {
 
     /// Every contact that is handed out is fit for use.
     #[test]
-    fn contacts_are_sane(dy in -0.0199f64..0.0199, roll in -0.0199f64..0.0199, which in 0..2) {
+    fn contacts_are_sane(dy in -0.045f64..0.0199, roll in -0.0199f64..0.0199, which in 0..2) {
         let table: &GeometryTable = if which == 0 { &ANZR1 } else { &S1002 };
         let gap = table.gap(dy, roll).unwrap();
         let mut out = [ContactPoint::default(); MAX_CONTACTS];

@@ -1,34 +1,21 @@
 //! Direct contact search: closed forms, properties, refusals, and the tables against it.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod common;
+
+use common::contact::{self, PLACEMENT};
 use proptest::prelude::*;
 use railsim::KeyPath;
 use railsim::contact::geometry_table::{ContactPoint, GeometryTable, MAX_CONTACTS, Placement};
 use railsim::contact::pair::Pair;
-use railsim::contact::profile::{Profile, ProfileKind, read_csv};
+use railsim::contact::profile::{Profile, ProfileKind};
 use railsim::contact::search::{NoContact, Part, Pose, RailShift, Side};
 use std::sync::LazyLock;
 
-const PLACEMENT: Placement = Placement {
-    gauge: 1.435,
-    gauge_point_depth: 0.016,
-    rail_inclination: 0.05,
-    tape_half_distance: 0.750,
-    wheel_radius: 0.460,
-    youngs_modulus: 210e9,
-    poisson: 0.28,
-};
 const STILL: RailShift = RailShift { y: 0.0, z: 0.0, roll: 0.0 };
 
-fn shipped(name: &str, kind: ProfileKind) -> Profile {
-    let path = format!("{}/../../models/profiles/{name}.csv", env!("CARGO_MANIFEST_DIR"));
-    let points = read_csv(&std::fs::read_to_string(&path).unwrap(), name).unwrap();
-    Profile::new(&points, kind, &KeyPath::of("profiles").key(name).key("points")).unwrap()
-}
-
 fn side(wheel: &str) -> Side {
-    let rail = shipped("as60", ProfileKind::Rail);
-    Side::new(&shipped(wheel, ProfileKind::Wheel), &rail, &PLACEMENT).unwrap()
+    Side::new(&contact::wheel(wheel), &contact::as60(), &PLACEMENT).unwrap()
 }
 
 static S1002: LazyLock<Side> = LazyLock::new(|| side("s1002"));
@@ -72,7 +59,7 @@ fn table_against_direct_search() {
     );
     for name in ["anzr1", "anzr1_worn_1", "anzr1_worn_2", "anzr1_worn_high", "s1002"] {
         let side = side(name);
-        let (wheel, rail) = (shipped(name, ProfileKind::Wheel), shipped("as60", ProfileKind::Rail));
+        let (wheel, rail) = (contact::wheel(name), contact::as60());
         let table = GeometryTable::build(&wheel, &rail, &PLACEMENT).unwrap();
         for yaw in [0.0, 0.01] {
             let mut errors: [Vec<f64>; 4] = Default::default();
@@ -169,7 +156,7 @@ fn gauge_rail_roll_and_rail_shift_enter() {
     let shifted = ANZR1.closest(&Pose { y: -2e-3, ..Pose::default() }, &STILL).unwrap()[0];
     assert!((moved.rail[0] - shifted.rail[0]).abs() < 1e-9);
     let wide = Placement { gauge: PLACEMENT.gauge + 4e-3, ..PLACEMENT };
-    let (wheel, rail) = (shipped("anzr1", ProfileKind::Wheel), shipped("as60", ProfileKind::Rail));
+    let (wheel, rail) = (contact::wheel("anzr1"), contact::as60());
     let widened = at(&Side::new(&wheel, &rail, &wide).unwrap(), &STILL);
     assert!((moved.rail[0] - widened.rail[0]).abs() < 1e-9);
     // a rail rolled outward meets the wheel further in on its head: R300 on a cone, by the angle times the radius
@@ -207,7 +194,7 @@ fn impossible_input_is_refused() {
         ANZR1.closest(&Pose { y: -0.2, ..Pose::default() }, &STILL),
         Err(NoContact::BesideTheRail)
     ));
-    let (wheel, rail) = (shipped("anzr1", ProfileKind::Wheel), shipped("as60", ProfileKind::Rail));
+    let (wheel, rail) = (contact::wheel("anzr1"), contact::as60());
     for gauge in [1.40, 1.52] {
         let placement = Placement { gauge, ..PLACEMENT };
         let refused = GeometryTable::build(&wheel, &rail, &placement).unwrap_err().to_string();
@@ -225,7 +212,7 @@ fn a_short_profile_is_not_silently_accepted() {
             .unwrap();
     let points: Vec<_> = read_csv(&text, "anzr1").unwrap().into_iter().filter(|p| p[0] < 5e-3).collect();
     let wheel = Profile::new(&points, ProfileKind::Wheel, &KeyPath::of("w")).unwrap();
-    let rail = shipped("as60", ProfileKind::Rail);
+    let rail = contact::as60();
     let placement = PLACEMENT;
     let table = GeometryTable::build(&wheel, &rail, &placement).unwrap();
     let side = Side::new(&wheel, &rail, &placement).unwrap();

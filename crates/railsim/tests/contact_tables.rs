@@ -6,6 +6,7 @@ mod common;
 use std::cell::Cell;
 use std::sync::Arc;
 
+use common::contact::PLACEMENT;
 use railsim::contact::geometry_table::store::MOST;
 use railsim::contact::geometry_table::{GeometryTable, Pair, Placement, Tables};
 use railsim::dynamics::compile::geometry_table;
@@ -13,16 +14,6 @@ use railsim::error::{Error, Fault};
 use railsim::run::{Free, simulate};
 use railsim::{KeyPath, Result};
 use serde_json::json;
-
-const PLACEMENT: Placement = Placement {
-    gauge: 1.435,
-    gauge_point_depth: 0.016,
-    rail_inclination: 0.05,
-    tape_half_distance: 0.750,
-    wheel_radius: 0.460,
-    youngs_modulus: 210e9,
-    poisson: 0.28,
-};
 
 fn pair(gauge: f64) -> Pair {
     Pair {

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use railsim::contact::creep::CreepLaw;
 use railsim::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
+use railsim::equipment::Acting;
 use railsim::integrator::{Integrator, Stepper, System};
 use serde_json::{Value, json};
 
@@ -38,6 +39,19 @@ fn right_hand_side_and_step_allocate_nothing() {
     for vehicle in ["coco134", "bobo86", "wagon2"] {
         allocates_nothing(vehicle, &rough(vehicle), 35.0);
     }
+    // Driven, coupled at both ends at an angle, in a sharp curve.
+    let mut value = rough("coco134");
+    value["track"]["layout"] = json!([
+        { "kind": "tangent", "length": 120.0 }, { "kind": "clothoid", "length": 30.0 },
+        { "kind": "curve", "radius": 250.0, "length": 50.0 }
+    ]);
+    value["run"]["speed"] = json!(3.0);
+    value["run"]["drive"] = json!({ "notch": 8, "until": { "time": 1.0 } });
+    value["run"]["couplers"] = json!({ "shank": 0.75, "front": [[0.0, 1e5], [1.0, 2e5]] });
+    value["run"]["train"] = json!({
+        "wagons": 5, "ahead": 2, "mass": 8e4, "length": 15.0, "brake_force": 5e4, "locomotives": [{ "at": 1, "mass": 1.3e5 }]
+    });
+    allocates_nothing("driven", &value, 3.0);
     // Every creep law, friction that changes along the track and with the slip, flanges that touch in a sharp curve.
     for law in CreepLaw::examples() {
         let mut value = rough("coco134");
@@ -73,6 +87,15 @@ fn allocates_nothing(what: &str, value: &Value, speed: f64) {
     }
     let program = SpeedProgram { s: equilibrium::reference_s(&model, 100.0), speed, acceleration: 0.0 };
     let mut system = VehicleSystem::new(&model, program);
+    if let Some(equipment) = &model.equipment {
+        let mut acting = Box::new(Acting::new(&model, equipment));
+        x.resize(model.map().size() + acting.states(), 0.0);
+        dx.resize(x.len(), 0.0);
+        acting.release(&model, &mut x);
+        acting.place_train(&model, &mut x);
+        acting.sample(&model, 0.0, &x);
+        system.acting = Some(acting);
+    }
     for integrator in Integrator::examples() {
         let mut stepper = Stepper::new(&integrator, x.len(), system.stiff_blocks());
         let before = COUNT.load(Ordering::Relaxed);

@@ -34,8 +34,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "damping = 1e5",
         "dampign = 1e5",
         "68: vehicle.contact.dampign: found an unknown key; allowed: damping, poisson, \
-         youngs_modulus (did you mean damping?)\n\
-         65: vehicle.contact.damping: found nothing; allowed: a number >= 0 N s/m",
+         youngs_modulus (did you mean damping?)",
     ),
     ("wheel_profile = \"round\"", "", "?: vehicle.wheel_profile: found nothing; allowed: a text"),
     (
@@ -192,8 +191,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "with = { axle = \"ws1\" }",
         "with = { axel = \"ws1\" }",
-        "35: vehicle.use[0].with.axel: found an unknown key; allowed: axle (did you mean axle?)\n\
-         35: vehicle.use[0].with.axle: found nothing; allowed: a text for {axle} in template axle",
+        "35: vehicle.use[0].with.axel: found an unknown key; allowed: axle (did you mean axle?)",
     ),
     (
         "[contact]",
@@ -225,8 +223,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
         "[[template.spare.body]]\nname = \"{spare}\"\nmas = 1.0\ninertia = [1.0, 1.0, 1.0]\n\
          position = [0.0, 0.0, 0.0]\n\n[contact]",
         "67: vehicle.template.spare.body[0].mas: found an unknown key; allowed: guided, inertia, mass, name, \
-         position (did you mean mass?)\n\
-         65: vehicle.template.spare.body[0].mass: found nothing; allowed: a number > 0 kg",
+         position (did you mean mass?)",
     ),
 ];
 
@@ -263,7 +260,6 @@ fn all_faults_are_said_at_once_and_each_once() {
              design_condition, design_speed_kmh, dynamic_brake, equipment, gap, include, load_case, name, outline, \
              parameters, parking_brake, sensor, shape, speed_hold, template, title, track, traction, use, wheel_profile, wheelset (did you mean title?)",
             "44: vehicle.template.axle.wheelset[0].mass: found 0 (from $axle.mass); allowed: a number > 0 kg",
-            "?: vehicle.title: found nothing; allowed: a text",
         ]
     );
 }
@@ -371,8 +367,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/integrator",
             json!({ "kind": "heun", "stp": 0.001 }),
-            "run.integrator.stp: found an unknown key; allowed: kind, step (did you mean step?)\n\
-         run.integrator.step: found nothing; allowed: a number",
+            "run.integrator.stp: found an unknown key; allowed: kind, step (did you mean step?)",
         ),
         (
             "/run/integrator/step",
@@ -473,7 +468,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
             "/run/spede",
             json!(3),
             "run.spede: found an unknown key; allowed: contact, creep, disturbance, drive, friction, gravity, hold, \
-         integrator, kind, load, load_steps, output_step, place, search, speed, speeds, start, train, wheel_profile (did you mean speed?)",
+         integrator, kind, load, load_steps, output_step, place, search, speed, speeds, start, train, wheel_profile (did you mean speeds?)",
         ),
     ]
 }

@@ -52,7 +52,6 @@ fn free_body() -> Model {
         contact,
         GRAVITY,
     )
-    .unwrap()
 }
 
 /// Throws the body at `s` and gives its largest departure from the parabola (m) and the drift of its angular momentum (1).

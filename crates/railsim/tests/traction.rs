@@ -7,6 +7,9 @@
 mod common;
 
 use common::{case, coco134, column};
+use railsim::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
+use railsim::equipment::Acting;
+use railsim::integrator::System;
 use railsim::run::{Ended, Free, Law, Outcome, Outside, simulate, simulate_controlled};
 use railsim::schema::Case;
 use serde_json::{Value, json};
@@ -80,8 +83,40 @@ fn a_lumped_train_takes_its_share_of_the_effort() {
     assert!((last("train.drawbar") - by_hand).abs() < 0.01 * by_hand);
 }
 
-/// At rest every contact of a wheel is a spring: in a tight curve an outer wheel stands on tread and flange. Pushed aside by what a
-/// steady law would let creep for ever, the vehicle stands.
+/// At rest every contact of a wheel is a spring: an axle on its flange, moved along by 5 um at no speed, is held at tread and flange.
+/// A steady law knows of no force there.
+#[test]
+fn at_rest_all_contacts_of_a_wheel_stick() {
+    let case = case(&locomotive(json!({ "until": { "time": 1.0 } })));
+    let model = compile::model(&case).unwrap();
+    let mut x = equilibrium::solve(&model, 20.0, 0.0).unwrap();
+    let program = SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 0.0, acceleration: 0.0 };
+    let mut system = VehicleSystem::new(&model, program);
+    let acting = Acting::new(&model, model.equipment.as_deref().unwrap());
+    x.resize(model.map().size() + acting.states(), 0.0);
+    let axle = model.map().q(model.bodies.len()).start;
+    let mut dx = vec![0.0; x.len()];
+    system.acting = Some(Box::new(acting));
+    // Outward until tread and flange carry.
+    let held = |system: &VehicleSystem<'_>| -> Vec<f64> {
+        let contacts = system.scratch.wheels[0][1].contacts();
+        contacts.iter().filter(|c| c.normal > 1e3).map(|c| c.creep[0] / c.normal).collect()
+    };
+    let found = (0..400).any(|_| {
+        x[axle + 1] += 5e-5;
+        system.acting.as_ref().unwrap().release(&model, &mut x);
+        system.rhs(0.0, &x, &mut dx);
+        held(&system).len() > 1
+    });
+    assert!(found, "no place with two contacts");
+    assert!(held(&system).iter().all(|share| share.abs() < 1e-9), "{:?}", held(&system));
+    x[axle] += 5e-6;
+    system.rhs(0.0, &x, &mut dx);
+    println!("force along over normal force: {:?}", held(&system));
+    assert!(held(&system).iter().all(|share| *share < -1e-3));
+}
+
+/// In a tight curve an outer wheel stands on tread and flange.
 #[test]
 fn a_vehicle_that_stands_on_flanges_does_not_creep() {
     let mut value = locomotive(json!({ "resistance": false, "until": { "time": 20.0 } }));

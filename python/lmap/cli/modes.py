@@ -184,7 +184,11 @@ def _document(vehicle: Vehicle, frame: pl.DataFrame) -> dict[str, Any]:
                 "shape": shape,
             }
         )
-    return {"vehicle": vehicle.data.name, "condition": vehicle.data.condition, "modes": modes}
+    return {
+        "vehicle": vehicle.data.name,
+        "condition": vehicle.data.condition or vehicle.data.design_condition,
+        "modes": modes,
+    }
 
 
 def _write(folder: Path, vehicle: Vehicle, frame: pl.DataFrame, below_hz: float) -> None:

@@ -31,6 +31,7 @@ def new(
     from lmap.vehicle import starter
 
     assert kind is Kind.VEHICLE
+    name = name.removesuffix(".toml")
     text = starter(name, like)
     path = Path(f"{name}.toml")
     try:

@@ -207,13 +207,13 @@ def drawing(label: str, frame: pl.DataFrame, body: Body, line: Line) -> Drawing:
     track = line.at(np.linspace(s - 1.5 * body.length, s + 0.5 * body.length, 60))[0]
     axis, across = pair.front_axes[0][:, 0], pair.front_axes[0][:, over]
 
-    def seen(name: str, points: Array, *, track: bool = False) -> DrawnCurve:
+    def seen(name: str, points: Array) -> DrawnCurve:
         """In the axes of the vehicle in front, from its pivot."""
         from_pivot = points - pair.front[0]
         x, y = (from_pivot @ axis).tolist(), (from_pivot @ across).tolist()
-        return DrawnCurve(name=name, x=x, y=y, role="limit" if track else "line")
+        return DrawnCurve(name=name, x=x, y=y)
 
-    curves = [seen("track", track, track=True)]
+    curves = [seen("track", track)]
     for name, pivot, axes, way in (
         ("in front", pair.front[0], pair.front_axes[0], 1.0),
         ("behind", pair.rear[0], pair.rear_axes[0], -1.0),

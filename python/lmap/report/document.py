@@ -62,6 +62,7 @@ def _spec(spec: SpecVerdict) -> dict[str, Any]:
         "procedure": spec.procedure,
         "vehicle": spec.vehicle,
         "condition": spec.condition,
+        "assumed": spec.assumed,
         "overrides": dict(spec.overrides),
         "criteria": [_criterion(criterion) for criterion in spec.criteria],
         "facts": [

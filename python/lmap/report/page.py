@@ -149,6 +149,7 @@ def _entry(position: int, spec: SpecVerdict) -> dict[str, str]:
         "title": spec.title,
         "verdict": words.VERDICTS[spec.outcome],
         "verdict_class": _class(str(spec.outcome)),
+        "assumed": "yes" if spec.assumed else "",
     }
 
 

@@ -65,7 +65,7 @@ class Plot:
     equal: bool = False
     """One length on both axes."""
     log: bool = False
-    """Both axes logarithmic."""
+    """Both axes logarithmic; the places of the points are written at the axis, powers of ten up the side."""
     y_down: bool = False
     """The vertical axis points down."""
     height: int = 340
@@ -149,6 +149,9 @@ def plotted(plot: Plot) -> dict[str, Any]:
         y["range"] = list(plot.y_range)
     if plot.log:
         x["type"] = y["type"] = "log"
+        places = np.unique(np.concatenate([np.ravel(np.asarray(line.x, dtype=float)) for line in plot.lines]))
+        x |= {"tickmode": "array", "tickvals": places.tolist()}
+        y["dtick"] = 1
     if plot.equal:
         y |= {"scaleanchor": "x", "scaleratio": 1}
     if plot.y_down:

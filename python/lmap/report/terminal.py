@@ -40,7 +40,7 @@ def table(acceptance: Acceptance, console: Console) -> None:
         console.print(_summary(acceptance))
         if not few and any(words.assumptions(spec) for spec in acceptance.specs):
             where = "the report (--report DIR), and a check of one spec, give the reason of each"
-            _note("assumed limits", where, console)
+            _note("assumed", where, console)
         console.print()
         _headline(
             "all specs",
@@ -79,7 +79,7 @@ def _spec(spec: SpecVerdict, console: Console, *, reasons: bool = True) -> None:
     if spec.criteria:
         console.print(_criteria(spec, wide=console.width >= _SIGNAL_COLUMNS))
     for name, reason in words.assumptions(spec) if reasons else ():
-        _note("assumed limit", f"{name}: {reason}", console)
+        _note("assumed", f"{name}: {reason}", console)
     for name, message in words.messages(spec):
         _note("note", f"{name}: {message}", console)
     if spec.facts:
@@ -90,7 +90,8 @@ def _spec(spec: SpecVerdict, console: Console, *, reasons: bool = True) -> None:
         console.print(_runs(spec))
         _endings(spec, console)
     console.print()
-    _headline(f"{spec.id} {spec.title}", spec.outcome, words.headline(spec.criteria), console)
+    mark = "; test assumed" if spec.assumed else ""
+    _headline(f"{spec.id} {spec.title}", spec.outcome, words.headline(spec.criteria) + mark, console)
 
 
 def _criteria(spec: SpecVerdict, *, wide: bool) -> Table:

@@ -119,8 +119,9 @@ def all_criteria(acceptance: Acceptance) -> list[CriterionVerdict]:
 
 
 def assumptions(spec: SpecVerdict) -> list[tuple[str, str]]:
-    """Criteria whose limit is assumed, each once, with the reason."""
-    return list(
+    """The test, where something in it is assumed, and criteria whose limit is, each once, with the reason."""
+    test = [("the test itself", spec.assumed)] if spec.assumed else []
+    return test + list(
         dict.fromkeys(
             (criterion.name, criterion.reason or "no reason is given")
             for criterion in spec.criteria

@@ -82,6 +82,8 @@ class Statistic(Link):
     """Unit that the signal must come in; none: the criterion's."""
     gives: ClassVar[str | None] = None
     """Unit of the number; none: the signal's."""
+    never_negative: ClassVar[bool] = False
+    """Whether that is so whatever its keys say."""
 
     @abstractmethod
     def read(self, signal: pl.DataFrame) -> Reading:
@@ -90,7 +92,7 @@ class Statistic(Link):
     @property
     def is_magnitude(self) -> bool:
         """Whether the value is never negative, so that a limit line stands on both sides of the signal."""
-        return False
+        return self.never_negative
 
 
 class Joint(Statistic):

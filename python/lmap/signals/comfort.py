@@ -161,6 +161,7 @@ class Sperling(Statistic):
     """
 
     name: ClassVar[str] = "sperling"
+    never_negative: ClassVar[bool] = True
     largest: ClassVar[bool] = True
     reads: ClassVar[str | None] = "m/s2"
     gives: ClassVar[str | None] = "1"
@@ -177,11 +178,6 @@ class Sperling(Statistic):
         if self.band_hz[0] >= self.band_hz[1]:
             raise ValueError("a band_hz that rises")
         return self
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """The index and the middle of its block."""
@@ -244,6 +240,7 @@ class MeanComfort(Joint):
     """
 
     name: ClassVar[str] = "mean_comfort"
+    never_negative: ClassVar[bool] = True
     largest: ClassVar[bool] = True
     reads: ClassVar[str | None] = "m/s2"
     gives: ClassVar[str | None] = "1"
@@ -252,11 +249,6 @@ class MeanComfort(Joint):
     percent: float = Field(default=95.0, ge=0.0, le=100.0)
     settle_s: NotNegative = 2.0
     min_rate_hz: Positive = 200.0
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
 
     def read_together(self, signals: Sequence[pl.DataFrame]) -> Reading:
         """The index, placed in the middle of the record."""
@@ -282,17 +274,13 @@ class VibrationTotal(Joint):
     """
 
     name: ClassVar[str] = "vibration_total"
+    never_negative: ClassVar[bool] = True
     reads: ClassVar[str | None] = "m/s2"
     gives: ClassVar[str | None] = "m/s2"
     k: list[Positive] = Field(default=[1.0, 1.0, 1.0], min_length=3, max_length=3)
     curves: list[Curve] = Field(default=["Wd", "Wd", "Wk"], min_length=3, max_length=3)
     settle_s: NotNegative = 2.0
     min_rate_hz: Positive = 200.0
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
 
     def read_together(self, signals: Sequence[pl.DataFrame]) -> Reading:
         """Value, placed in the middle of the record."""

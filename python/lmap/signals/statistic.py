@@ -139,12 +139,8 @@ class SlidingRms(_Windowed):
     """Largest root mean square within a window; with `about_mean` less the window's own mean (FRA: 2 s)."""
 
     name: ClassVar[str] = "sliding_rms"
+    never_negative: ClassVar[bool] = True
     about_mean: bool = True
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """Value and the middle of its window."""
@@ -158,11 +154,7 @@ class MaxAbs(Statistic):
     """Largest |x|."""
 
     name: ClassVar[str] = "max_abs"
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
+    never_negative: ClassVar[bool] = True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """Value and its sample."""
@@ -223,12 +215,8 @@ class Rms(Statistic):
     """Root mean square over the run; with `about_mean` the standard deviation (population)."""
 
     name: ClassVar[str] = "rms"
+    never_negative: ClassVar[bool] = True
     about_mean: bool = True
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """Value, placed in the middle of the record."""
@@ -274,11 +262,7 @@ class PeakToPeak(Statistic):
     """Largest less smallest x."""
 
     name: ClassVar[str] = "peak_to_peak"
-
-    @property
-    def is_magnitude(self) -> bool:
-        """Always."""
-        return True
+    never_negative: ClassVar[bool] = True
 
     def read(self, signal: pl.DataFrame) -> Reading:
         """Value, placed at the largest x."""

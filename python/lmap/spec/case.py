@@ -38,6 +38,9 @@ class VehicleData:
     mass: float | None
     """kg, in the condition."""
     bodies: tuple[Any, ...]
+    model: Mapping[str, Any] = field(default_factory=dict)
+    """In the condition, with templates copied, references replaced and mirrored elements made: the core's
+    `resolve_summary`. `lmap.view.model` gives it types."""
 
     def declares(self, key: str | None) -> bool:
         """Whether the vehicle's file has a dotted key; nothing is always there."""

@@ -187,6 +187,9 @@ class Spec(BaseModel):
     """The procedure's own numbers, checked by its `SETTINGS`."""
     set: dict[str, Any] = Field(default_factory=dict)
     """Named parameters of the vehicle and keys of the spec; see `overrides`."""
+    assumed: str | None = Field(default=None, min_length=1)
+    """What of the test itself, beside its limits, no public source gives, and why it is as it is: a shape, a radius, a
+    twist."""
     sign_off: SignOff | None = None
     """For procedures that wait for a person."""
     criterion: list[Criterion] = Field(min_length=1)

@@ -13,8 +13,8 @@ from lmap.view.shapes import Box, Solid, outside, shapes
 RAIL_WIDTH, RAIL_HEAD, RAIL_HEIGHT, RAIL_FOOT, RAIL_WEB = 0.072, 0.045, 0.172, 0.15, 0.018
 """m; a 60 kg/m rail, drawn of three boxes."""
 
-OVERHANG = 1.5
-"""m of rail beyond the vehicle at either end."""
+OVERHANG = 0.5
+"""m of rail beyond the vehicle at either end: less than what the page shows, or they have no ends to be seen."""
 
 _UNITS = {
     "stiffness": ("N/m", "N m/rad"),

@@ -70,7 +70,7 @@ pub fn model(case: &Case) -> Result<Model> {
         support(track),
         contact,
         case.run.gravity,
-    )?;
+    );
     model.guided = guided(vehicle);
     model.gaps = gaps(vehicle)?;
     model.equipment = equipment(case, &model)?.map(Box::new);
@@ -252,10 +252,10 @@ pub fn geometry_table(case: &Case) -> Result<Arc<GeometryTable>> {
 }
 
 /// Interpenetration over which the tables of a case average, m: that of its `vehicle.contact.averaging_load`, else of the static wheel load. To a
-/// micrometre, so that vehicles of almost the same weight share their tables. A vehicle without weight takes [`PENETRATION`].
+/// tenth of a micrometre, so that vehicles of almost the same weight share their tables. A vehicle without weight takes [`PENETRATION`].
 fn penetration(case: &Case, placement: &Placement) -> f64 {
     let load = case.vehicle.contact.averaging_load.unwrap_or_else(|| wheel_load(case));
-    if load > 0.0 { 1e-6 * (1e6 * placement.penetration_under(load)).round() } else { PENETRATION }
+    if load > 0.0 { 1e-7 * (1e7 * placement.penetration_under(load)).round() } else { PENETRATION }
 }
 
 /// Static wheel load, the mean of all wheels, N. Bodies that are led along the track stand on none.

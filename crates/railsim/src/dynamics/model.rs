@@ -11,7 +11,6 @@ use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
 use crate::equipment::Equipment;
-use crate::error::Result;
 use crate::integrator::StiffBlock;
 use crate::math::{Mat3, Vec3};
 use crate::track::DeviationField;
@@ -206,9 +205,7 @@ pub struct Model {
 
 impl Model {
     /// Puts the parts together.
-    ///
-    /// # Errors
-    /// None yet beyond those of the parts; kept fallible for checks across parts.
+    #[must_use]
     #[allow(clippy::too_many_arguments)] // the one place where all parts meet
     pub fn new(
         bodies: Vec<RigidBody>,
@@ -221,7 +218,7 @@ impl Model {
         support: Option<Support>,
         contact: Contact,
         gravity: f64,
-    ) -> Result<Self> {
+    ) -> Self {
         links.sort_by_key(|l| (l.a, l.b));
         let mut map = StateMap { bodies: bodies.len(), wheelsets: wheelsets.len(), memory: 0 };
         let first = map.size();
@@ -236,7 +233,7 @@ impl Model {
                 StiffBlock { pos: start..start + 9, vel: start + 9..start + 18 }
             })
             .collect();
-        Ok(Self {
+        Self {
             bodies,
             wheelsets,
             links,
@@ -252,7 +249,7 @@ impl Model {
             equipment: None,
             stiff_blocks,
             memory: map.memory,
-        })
+        }
     }
 
     /// Layout of the state.
@@ -289,5 +286,11 @@ impl Model {
     #[must_use]
     pub fn reference(&self) -> usize {
         self.speed_hold.map_or(0, |h| h.body)
+    }
+
+    /// Place of the vehicle's centre along the track in state `x`, m: where the reference body would be if it stood there.
+    #[must_use]
+    pub fn place(&self, x: &[f64]) -> f64 {
+        x[self.map().q(self.reference()).start] - self.rigid(self.reference()).position.x
     }
 }

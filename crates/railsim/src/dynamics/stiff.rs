@@ -94,30 +94,24 @@ pub fn matrices(model: &Model, scratch: &Scratch, w: usize, sticking: f64, k: &m
             }
         }
     }
-    let body = &model.wheelsets[w].body;
-    let mut mass = [0.0; PAIR];
-    mass[..3].fill(body.mass);
-    mass[3..6].copy_from_slice(body.inertia.as_slice());
     match &model.support {
         Some(support) => {
-            mass[6..].copy_from_slice(&[support.mass, support.mass, support.inertia]);
             for d in 0..3 {
                 let diagonal = (6 + d) * PAIR + 6 + d;
                 k[diagonal] += support.stiffness[d];
                 c[diagonal] += support.damping[d];
             }
         }
-        // A rigid track does not move: no row, no column.
+        // A rigid track does not move: no column here, no row by its infinite mass.
         None => {
-            mass[6..].fill(f64::INFINITY);
             for i in 0..PAIR {
                 k[i * PAIR + 6..(i + 1) * PAIR].fill(0.0);
                 c[i * PAIR + 6..(i + 1) * PAIR].fill(0.0);
             }
         }
     }
-    for i in 0..PAIR {
-        let inverse = 1.0 / mass[i];
+    for (i, mass) in inertias(model, w).into_iter().enumerate() {
+        let inverse = 1.0 / mass;
         for j in 0..PAIR {
             k[i * PAIR + j] *= inverse;
             c[i * PAIR + j] *= inverse;

@@ -100,6 +100,9 @@ impl Equipment {
             add("traction.notch", Q::Notch);
             add("traction.effort", Q::Effort);
             add("traction.adhesion", Q::Adhesion);
+            if self.drive.sanding.is_some() {
+                add("traction.sanding", Q::Sanding);
+            }
             for (b, bogie) in self.bogies.iter().enumerate() {
                 add(&format!("traction.{}.effort", bogie.name), Q::BogieEffort(b));
                 if traction.thermal.is_some() {
@@ -159,6 +162,8 @@ pub enum Quantity {
     Effort,
     /// Longitudinal creep force of all wheels over their load.
     Adhesion,
+    /// Factor of sand on friction.
+    Sanding,
     /// Torque of a bogie's motors over the wheel radius, N.
     BogieEffort(usize),
     /// Temperature rise of a bogie's motors, share of the limit.
@@ -525,6 +530,7 @@ impl<'m> Acting<'m> {
             Q::Adhesion => {
                 ratio(wheels().map(|(w, s)| fx(w, s)).sum(), wheels().map(|(w, s)| load(w, s)).sum())
             }
+            Q::Sanding => self.sanded,
             Q::BogieEffort(b) => self.design.bogies[b].wheelsets.iter().map(|w| effort(*w)).sum(),
             Q::Temperature(b) => self.motors.get(b).map_or(f64::NAN, Motor::temperature),
             Q::Pipe => own.map_or(f64::NAN, |p| p.pipe),

@@ -18,7 +18,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 70] = [
+const PARTS: [(&str, &str, &str); 71] = [
     ("Fx", "N", "longitudinal creep force on the wheel, + forward"),
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force on the flange, all contacts there"),
@@ -68,6 +68,7 @@ const PARTS: [(&str, &str, &str); 70] = [
     ("real", "1/s", "real part of the eigenvalue, positive where the motion grows"),
     ("reservoir", "Pa", "pressure in the auxiliary reservoir, gauge"),
     ("s", "m", "place of the vehicle along the track"),
+    ("sanding", "1", "what sand makes of the coefficient of friction, a factor; 1 without"),
     ("shift", "m", "outward lateral shift of the wheel on its rail"),
     (
         "slip",

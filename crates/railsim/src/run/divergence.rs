@@ -35,7 +35,7 @@ pub fn stepped(system: &VehicleSystem<'_>, end: StepEnd, t: f64, x: &[f64]) -> R
                 .to_owned(),
         ),
     };
-    Err(Error::Diverged { t, s: x[map.q(model.reference()).start], body, cause })
+    Err(Error::Diverged { t, s: model.place(x), body, cause })
 }
 
 /// Checks the state after a step.
@@ -45,7 +45,7 @@ pub fn stepped(system: &VehicleSystem<'_>, end: StepEnd, t: f64, x: &[f64]) -> R
 pub fn check(system: &mut VehicleSystem<'_>, t: f64, x: &[f64]) -> Result<(), Error> {
     let model = system.model;
     let map = model.map();
-    let s = x[map.q(model.reference()).start];
+    let s = model.place(x);
     let diverged = |body: String, cause: String| Err(Error::Diverged { t, s, body, cause });
     for i in 0..model.count() {
         let body = model.rigid(i);

@@ -50,7 +50,7 @@ pub(crate) fn value(
     let reference = model.reference();
     match source {
         Source::Time => t,
-        Source::Place => x[map.q(reference).start] - model.rigid(reference).position.x,
+        Source::Place => model.place(x),
         Source::Speed => dx[map.q(reference).start],
         Source::HoldForce => model.speed_hold.map_or(0.0, |hold| {
             let (s, v) = system.program.at(t);

@@ -159,7 +159,7 @@ fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) ->
         system.rhs(t, &x, &mut dx);
         recorder.record(&system, t, &x, &dx);
         output += 1;
-        let s = x[reference] - model.rigid(model.reference()).position.x;
+        let s = model.place(&x);
         if leading.iter().any(|i| x[*i] >= case.track.length) {
             control.progress(t, s, 1.0);
             break Ended::EndOfTrack;
@@ -195,7 +195,7 @@ fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) ->
         "rejected": counts.rejected,
         "largest_eigenvalue": limit.largest_eigenvalue,
         "simulated_s": step as f64 * h,
-        "distance_m": x[reference] - model.rigid(model.reference()).position.x - start,
+        "distance_m": model.place(&x) - start,
     });
     Ok(Outcome { columns: recorder.into_columns(), labels: Vec::new(), ended, statistics })
 }

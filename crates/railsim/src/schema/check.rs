@@ -6,7 +6,7 @@
 //! line here. Two words are added to JSON schema: `unit`, shown in messages, and the same ranges on a list hold for
 //! each of its numbers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -53,15 +53,19 @@ fn segments(path: &serde_path_to_error::Path) -> Vec<Segment> {
         .collect()
 }
 
-/// `did you mean ...`, if one of the known names is near.
-pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+/// The known name that is nearest, if one is near.
+fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const NEAR: f64 = 0.5; // share of letters that agree; below it a hint misleads more than it helps
     known
         .into_iter()
         .map(|candidate| (strsim::normalized_damerau_levenshtein(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness >= NEAR)
         .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)))
-        .map(|(_, candidate)| format!("did you mean {candidate}?"))
+        .map(|(_, candidate)| candidate)
+}
+
+fn did_you_mean(name: &str) -> String {
+    format!("did you mean {name}?")
 }
 
 /// A fault with the nearest known name as its hint.
@@ -74,8 +78,23 @@ pub(super) fn unknown<'a>(
 ) -> Fault {
     let fault = Fault::new(at, found, allowed);
     match nearest(name, known) {
-        Some(hint) => fault.hint(hint),
+        Some(name) => fault.hint(did_you_mean(name)),
         None => fault,
+    }
+}
+
+/// A fault for an unknown key, and which of the keys `left` (those that do not stand there already) seems to be meant: it need
+/// not be missed a second time.
+pub(super) fn unknown_key<'a>(
+    at: KeyPath,
+    allowed: String,
+    key: &str,
+    left: impl IntoIterator<Item = &'a str>,
+) -> (Fault, Option<String>) {
+    let fault = Fault::new(at, "an unknown key", allowed);
+    match nearest(key, left) {
+        Some(name) => (fault.hint(did_you_mean(name)), Some(name.to_owned())),
+        None => (fault, None),
     }
 }
 
@@ -252,26 +271,26 @@ impl<'a> Checker<'a> {
         let no = |part: &Json, key: &str| part.get(key).and_then(Json::as_bool) == Some(false);
         let closed = parts.iter().any(|p| no(p, "additionalProperties") || no(p, "unevaluatedProperties"));
         let further = parts.iter().find_map(|p| p.get("additionalProperties").filter(|s| s.is_object()));
-        for (key, item) in map {
-            if let Some(schema) = known.get(key.as_str()) {
-                self.check(item, schema, faults);
-            } else if closed {
-                let names: Vec<&str> = known.keys().copied().collect();
-                let allowed = names.join(", ");
-                faults.push(unknown(item.at.clone(), "an unknown key".into(), allowed, key, names));
-            } else if let Some(schema) = further {
-                self.check(item, schema, faults);
-            }
-        }
-        let mut missing: Vec<&str> = parts
+        let mut missing: BTreeSet<&str> = parts
             .iter()
             .filter_map(|p| p.get("required").and_then(Json::as_array))
             .flatten()
             .filter_map(Json::as_str)
             .filter(|key| !map.contains_key(*key))
             .collect();
-        missing.sort_unstable();
-        missing.dedup();
+        for (key, item) in map {
+            if let Some(schema) = known.get(key.as_str()) {
+                self.check(item, schema, faults);
+            } else if closed {
+                let allowed = known.keys().copied().collect::<Vec<_>>().join(", ");
+                let left = known.keys().copied().filter(|k| !map.contains_key(*k));
+                let (fault, meant) = unknown_key(item.at.clone(), allowed, key, left);
+                faults.push(fault);
+                missing.retain(|name| Some(*name) != meant.as_deref());
+            } else if let Some(schema) = further {
+                self.check(item, schema, faults);
+            }
+        }
         for key in missing {
             let allowed = known.get(key).map_or_else(|| "a value".to_owned(), |s| self.allowed(s));
             faults.push(Fault::new(node.at.key(key), "nothing", allowed));

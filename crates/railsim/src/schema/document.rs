@@ -72,6 +72,12 @@ impl Document {
 
     /// The vehicle in one condition.
     pub fn resolve(&self, condition: Option<&str>, faults: &mut Vec<Fault>) -> Option<Vehicle> {
+        let whole = self.expand(condition, faults);
+        self.build(&whole, condition, faults)
+    }
+
+    /// The same document with its lists expanded, every reference a number, and what made them so taken out.
+    pub fn expand(&self, condition: Option<&str>, faults: &mut Vec<Fault>) -> Node {
         let (name, at) = match condition {
             Some(name) => (name, KeyPath::of("condition")),
             None => (self.design_condition(), self.root.at.key("design_condition")),
@@ -91,23 +97,27 @@ impl Document {
             }
         }
         let numbers = parameter::evaluate(&parameters, faults);
-        let (elements, spare) = template::expand(&self.root, &numbers, &parameters, faults);
-
-        // The same document with the lists expanded and all that has been read above taken out.
+        let (mut elements, spare) = template::expand(&self.root, &numbers, &parameters, faults);
         let mut whole = self.root.clone();
         if let Value::Table(map) = &mut whole.value {
             for key in ["parameters", "condition", "template", "use"].iter().chain(&KINDS) {
                 map.remove(*key);
             }
             map.values_mut().for_each(|item| parameter::resolve(item, &numbers, &parameters, faults));
-            for (kind, items) in elements {
+            for kind in KINDS {
+                let items = elements.remove(kind).unwrap_or_default();
                 let list = Node { at: self.root.at.key(kind), via: None, value: Value::List(items) };
                 map.insert(kind.to_owned(), list);
             }
         }
         check_spare(&spare, faults);
-        let written = check::read::<WrittenVehicle>(&whole, faults)?;
-        Builder::new(&whole, faults).vehicle(written, name)
+        whole
+    }
+
+    /// The vehicle of an expanded document.
+    pub fn build(&self, whole: &Node, condition: Option<&str>, faults: &mut Vec<Fault>) -> Option<Vehicle> {
+        let written = check::read::<WrittenVehicle>(whole, faults)?;
+        Builder::new(whole, faults).vehicle(written, condition.unwrap_or(self.design_condition()))
     }
 
     /// Sets named parameters as `--set` and `[set]` do, in the document too.
@@ -160,46 +170,6 @@ fn check_spare(spare: &Elements, faults: &mut Vec<Fault>) {
             }
         }
     }
-}
-
-/// What procedures need to know of a vehicle before any case exists, as JSON: `document` (with the overrides in its
-/// `parameters`), `name`, `title`, `design_speed` (m/s), `wheel_radius` (m, of the first wheelset), `wheel_profile`, `track`,
-/// `conditions`, `design_condition`, `mass` (kg, all bodies) and `bodies`, both in `condition` or else the design
-/// condition. `overrides` are named parameters as `--set` gives them: dotted name to number or reference.
-///
-/// # Errors
-/// [`Error::Input`] with every fault; those of an override have the key `set.<name>`, all others start with `vehicle`.
-pub fn resolve_summary(
-    document: &Json,
-    overrides: &Map<String, Json>,
-    condition: Option<&str>,
-) -> Result<Json> {
-    let mut faults = Vec::new();
-    let mut changed = document.clone();
-    let mut read = Document::read(document, &mut faults);
-    read.set(&mut changed, overrides, &mut faults);
-    read.refuse_hidden(overrides, condition.unwrap_or(read.design_condition()), &mut faults);
-    let vehicle = read.resolve(condition, &mut faults);
-    let vehicle = finish(vehicle, faults)?;
-    let bodies: Vec<&str> = vehicle
-        .bodies
-        .iter()
-        .map(|b| b.name.as_str())
-        .chain(vehicle.wheelsets.iter().map(|w| w.name.as_str()))
-        .collect();
-    Ok(json!({
-        "document": changed,
-        "name": vehicle.name,
-        "title": vehicle.title,
-        "design_speed": vehicle.design_speed,
-        "wheel_radius": vehicle.wheelsets.first().map(|w| w.radius),
-        "wheel_profile": vehicle.wheel_profile,
-        "track": vehicle.track,
-        "conditions": read.condition_names().collect::<Vec<_>>(),
-        "design_condition": vehicle.design_condition,
-        "mass": vehicle.mass(),
-        "bodies": bodies,
-    }))
 }
 
 /// JSON schema of a vehicle file, for editors. A number may also be a reference to a named parameter.

@@ -277,7 +277,7 @@ fn whole() -> f64 {
 }
 
 /// A locomotive of the train, as a mass with effort. It pulls and brakes with the vehicle's own curves and demands at its own speed, after
-/// the same lag, never limited by adhesion.
+/// the same lag, never limited by adhesion; its air brake is that of the wagons.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrainLocomotive {

@@ -13,6 +13,7 @@ mod node;
 mod parameter;
 pub mod run;
 mod run_check;
+mod summary;
 mod template;
 mod toml_source;
 pub mod track;
@@ -20,8 +21,9 @@ mod vehicle;
 mod written;
 
 pub use case::{Case, FORMAT, ProfileData, ProfileKind};
-pub use document::{resolve_summary, vehicle_schema};
+pub use document::vehicle_schema;
 pub use run::{Run, RunKind};
+pub use summary::resolve_summary;
 pub use toml_source::{SyntaxError, line_of, syntax_error, toml_to_json};
 pub use track::{Support, Track};
 pub use vehicle::{

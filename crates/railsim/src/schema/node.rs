@@ -105,6 +105,11 @@ impl Node {
         }
     }
 
+    /// Whether it says `true`.
+    pub fn is_true(&self) -> bool {
+        matches!(self.value, Value::Bool(true))
+    }
+
     /// Whether anything in here has been found faulty already.
     pub fn is_faulty(&self) -> bool {
         match &self.value {

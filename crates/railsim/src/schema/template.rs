@@ -171,26 +171,23 @@ impl Expansion<'_> {
             return;
         }
         let needed = placeholders(template);
+        let mut missing: BTreeSet<&String> =
+            needed.iter().filter(|word| !written.with.contains_key(*word)).collect();
+        let complete = missing.is_empty();
         for word in written.with.keys().filter(|word| !needed.contains(*word)) {
             let allowed = if needed.is_empty() {
                 format!("nothing: template {name} has no placeholders")
             } else {
                 needed.iter().cloned().collect::<Vec<_>>().join(", ")
             };
-            let known = needed.iter().map(String::as_str);
-            faults.push(unknown(
-                node.at.key("with").key(word),
-                "an unknown key".into(),
-                allowed,
-                word,
-                known,
-            ));
+            let left = missing.iter().map(|word| word.as_str());
+            let (fault, meant) = check::unknown_key(node.at.key("with").key(word), allowed, word, left);
+            faults.push(fault);
+            missing.retain(|word| Some(word.as_str()) != meant.as_deref());
         }
-        let mut complete = true;
-        for word in needed.iter().filter(|word| !written.with.contains_key(*word)) {
+        for word in missing {
             let allowed = format!("a text for {{{word}}} in template {name}");
             faults.push(Fault::new(node.at.key("with").key(word), "nothing", allowed));
-            complete = false;
         }
         if !complete {
             return;

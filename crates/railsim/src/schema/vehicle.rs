@@ -171,7 +171,7 @@ pub struct ContactSettings {
     #[schemars(extend("minimum" = 0, "unit" = "N s/m"))]
     pub damping: f64,
     /// Wheel load over whose patch the contact tables average position, angle and curvature, N. If absent, the static wheel load: the
-    /// vehicle's weight over its wheels. The approach that belongs to it is rounded to a micrometre.
+    /// vehicle's weight over its wheels. The approach that belongs to it is rounded to a tenth of a micrometre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "N"))]
     pub averaging_load: Option<f64>,

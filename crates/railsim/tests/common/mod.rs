@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // each test binary uses its own part
 
+pub mod contact;
+
 use std::path::PathBuf;
 
 use railsim::schema::{Case, toml_to_json};

@@ -13,12 +13,12 @@
 //!
 //! **Second parts.** Where the pair touches in two places of one zone at once (root and face of a worn flange, two places of a
 //! tread), that zone is cut between them ([`seam`]) and each part has its own contact: up to three at once, in four slots. Which pairs do, building the table finds out; for all
-//! others it costs nothing. The back of a flange is in no table: within [`SHIFT_RANGE`] it does not come nearer than some 10 mm to a running rail.
+//! others it costs nothing. The back of a flange is in no table: [`SHIFT_RANGE`] outward it still stands some 10 mm clear of a running rail.
 //!
 //! **Quasi-elastic averages.** Rigid contact points jump from one place of nearly conforming profiles to another; the pressed patch
 //! does not. Each zone's position, angle and curvature are averages over the zone with the weight
-//! w = max(0, 1 - n/delta), n the normal distance beyond the zone's smallest gap and delta = [`PENETRATION`], an elastic
-//! approach as under a wheel load. Every stored value is thus a continuous function of dy and roll, and bilinear
+//! w = max(0, 1 - n/delta), n the normal distance beyond the zone's smallest gap and delta the interpenetration that belongs to a
+//! wheel load ([`Placement::penetration_under`]; a run takes the vehicle's static one). Every stored value is thus a continuous function of dy and roll, and bilinear
 //! interpolation keeps it so.
 //!
 //! **Curvatures.** Longitudinal 1/r cos(gamma) with r the local rolling radius (rail straight). Lateral relative curvature: the weighted
@@ -53,7 +53,7 @@ use grid::Shifts;
 pub const BLEND_FROM: f64 = 0.15;
 /// Contact angle from which on it is all flange, rad.
 pub const BLEND_TO: f64 = 0.35;
-/// Normal penetration of the quasi-elastic average, m.
+/// Normal penetration of the quasi-elastic average where no load is said, m: that of some 40 kN.
 pub const PENETRATION: f64 = 0.03e-3;
 /// Least normal penetration of an average, m.
 pub const LEAST_PENETRATION: f64 = 1e-6;
