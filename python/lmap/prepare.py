@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib import metadata
 from pathlib import Path
@@ -153,7 +153,7 @@ def prepare(path: Path, settings: Mapping[str, Any] | None = None, store: Store 
             *_inputs(sources),
             *_outline_input(outline),
             *_records(cases, loaded.document.path),
-            *_law_inputs(cases, _beside_law(loaded)),
+            *_law_inputs((case, _beside_law(case, loaded, spec, procedure)) for case in cases),
         ),
         key=key,
     )
@@ -432,11 +432,13 @@ def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
     ]
 
 
-def _beside_law(loaded: LoadedSpec) -> Path:
-    """The folder that control laws are seen from: that of the file that names them, or the caller's."""
-    if loaded.given & {"run.controller", "run.controller.law"}:
+def _beside_law(case: Case, loaded: LoadedSpec, spec: Spec, procedure: Procedure) -> Path:
+    """The folder that a case's control law is seen from: that of the file that names it, or the caller's."""
+    named = Problem(key=("run", "controller", "law"), found="", allowed="")
+    key = _as_written(procedure, spec, case.label, named).key
+    if key == named.key and loaded.given & {"run.controller", "run.controller.law"}:
         return Path.cwd()
-    return loaded.written_in("run.controller").parent
+    return loaded.written_in(".".join(map(str, key[:2]))).parent
 
 
 def _with_laws(cases: Sequence[Case], loaded: LoadedSpec, spec: Spec, procedure: Procedure) -> list[Case]:
@@ -445,7 +447,7 @@ def _with_laws(cases: Sequence[Case], loaded: LoadedSpec, spec: Spec, procedure:
     problems: list[Problem] = []
     for case in cases:
         try:
-            found.append(controller.with_controller(case, _beside_law(loaded)))
+            found.append(controller.with_controller(case, _beside_law(case, loaded, spec, procedure)))
         except InputProblem as error:
             told = (_as_written(procedure, spec, case.label, problem) for problem in error.problems)
             problems += [loaded.locate(problem) for problem in told]
@@ -463,10 +465,10 @@ def _law_facts(cases: Sequence[Case]) -> list[Fact]:
     ]
 
 
-def _law_inputs(cases: Sequence[Case], beside: Path) -> list[InputFile]:
-    """The files of all control laws."""
+def _law_inputs(cases: Iterable[tuple[Case, Path]]) -> list[InputFile]:
+    """The files of all control laws, of cases and the folders that they are seen from."""
     found = {}
-    for case in cases:
+    for case, beside in cases:
         path = controller.law_file(case, beside)
         if path is not None:
             sha256 = case.data["run"]["controller"]["sha256"]

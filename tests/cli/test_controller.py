@@ -17,6 +17,7 @@ import pytest
 
 import lmap
 from lmap.cli import app
+from lmap.errors import InputProblem
 from lmap.verdict import SpecVerdict
 
 pytestmark = pytest.mark.needs_core
@@ -112,6 +113,23 @@ def test_a_law_beside_the_spec_is_read_anew(place: Path) -> None:
     whole = effort()
     spoil(place / "slip_pi.py", "return min(max(", "return 0.5 * min(max(")
     assert effort() == pytest.approx(0.5 * whole, rel=0.05)
+
+
+def test_a_law_that_is_set_is_seen_from_here_and_that_of_a_case_from_its_spec(
+    place: Path,
+) -> None:
+    """One message: the other case has a law of its own."""
+    (place / "laws").mkdir()
+    shutil.move(place / SPEC, place / "laws")
+    shutil.move(place / "slip_pi.py", place / "laws")
+    settings = {"run.drive.until.time": 0.1, "run.controller": {"law": "here:law", "inputs": []}}
+    with pytest.raises(InputProblem) as raised:
+        lmap.check(place / "laws" / SPEC, set=settings)
+    [problem] = raised.value.problems
+    assert 'found "here:law": no here.py' in str(problem)
+    (place / "here.py").write_text("def law(t, seen):\n    return None\n", encoding="utf-8")
+    [spec] = lmap.check(place / "laws" / SPEC, set=settings).specs
+    assert {one.path for one in spec.inputs if one.role == "control law"} == {"laws/slip_pi.py", "here.py"}
 
 
 def test_jobs_change_no_bit(place: Path) -> None:

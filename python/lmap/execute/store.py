@@ -91,8 +91,8 @@ class Store:
     """A folder of results of one core; `Store.temporary` is gone with its last user."""
 
     def __init__(self, folder: Path, core: str) -> None:
-        self.root = folder
-        self.folder = folder / hashlib.sha256(core.encode()).hexdigest()[:16]
+        self.root = folder.absolute()  # the working folder may be another one while an FMU is loaded
+        self.folder = self.root / hashlib.sha256(core.encode()).hexdigest()[:16]
 
     @classmethod
     def temporary(cls, core: str) -> Store:

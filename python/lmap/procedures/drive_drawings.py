@@ -261,19 +261,17 @@ def _stop(frames: Frames, published: Stops) -> Drawing | None:
     if not stops:
         return None
     curves = [_curve(label, _numbers(one, "t"), _numbers(one, "v", 3.6)) for label, one in stops.items()]
-    for label, time in published.items():
-        if label in stops:
-            curves.append(
-                _curve(f"printed, {label}: {time:g} s", [time], [3.6 * float(stops[label]["v"][-1])], "mark")
-            )
+    for label, one in stops.items():
+        if label in published:
+            end = 3.6 * float(one["v"][-1])
+            name = f"printed, {label}: {published[label]:g} s"
+            curves.append(_curve(name, [published[label]], [end], "mark"))
     return Drawing(
         title="Speed over time",
         x_label="time t (s)",
         y_label="speed (km/h)",
         curves=tuple(curves),
-        caption="Points: the times that the paper prints for the end of a run (its Table 8)."
-        if published
-        else "",
+        caption="Points: the times that the paper prints (its Table 8)." if published else "",
     )
 
 
