@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use railsim::KeyPath;
 use railsim::contact::geometry_table::{ContactPoint, GeometryTable, MAX_CONTACTS, Placement};
 use railsim::contact::pair::Pair;
-use railsim::contact::profile::{Profile, ProfileKind};
+use railsim::contact::profile::{Profile, ProfileKind, read_csv};
 use railsim::contact::search::{NoContact, Part, Pose, RailShift, Side};
 use std::sync::LazyLock;
 

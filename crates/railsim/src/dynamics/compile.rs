@@ -258,11 +258,9 @@ fn penetration(case: &Case, placement: &Placement) -> f64 {
     if load > 0.0 { 1e-7 * (1e7 * placement.penetration_under(load)).round() } else { PENETRATION }
 }
 
-/// Static wheel load, the mean of all wheels, N. Bodies that are led along the track stand on none.
+/// Static wheel load, the mean of all wheels, N.
 fn wheel_load(case: &Case) -> f64 {
-    let vehicle = &case.vehicle;
-    let guided: f64 = vehicle.bodies.iter().filter(|body| body.guided).map(|body| body.mass).sum();
-    (vehicle.mass() - guided) * case.run.gravity / (2.0 * vehicle.wheelsets.len().max(1) as f64)
+    case.vehicle.mass() * case.run.gravity / (2.0 * case.vehicle.wheelsets.len().max(1) as f64)
 }
 
 /// The same pair for direct search ([`Side`]).
