@@ -287,7 +287,7 @@ def test_a_new_vehicle_is_one_and_is_never_overwritten(
     made = vehicle.Vehicle.load("shunter.toml")
     assert made.data.name == "shunter"
     assert made.data.mass == vehicle.Vehicle.load("coco134").data.mass
-    code, _, [message] = lmap("new", "vehicle", "shunter")
+    code, _, [message] = lmap("new", "vehicle", "shunter.toml")
     assert (code, message) == (2, "lmap: shunter.toml: found a file; allowed: a name that is not taken")
     code, _, [message] = lmap("new", "vehicle", "a b")
     assert code == 2

@@ -210,6 +210,9 @@ def test_numbers_have_four_digits(value: float | None, text: str) -> None:
 def test_numbers_with_units_and_signs() -> None:
     assert numbers.quantity(0.5, "1") == "0.5000"
     assert numbers.quantity(0.5, "g") == "0.5000 g"
+    # as many digits as what is laid beside it
+    assert numbers.quantity(109.50764, "kN", 109.515) == "109.508 kN"
+    assert numbers.quantity(2.35, "s", 4.0) == "2.350 s"
     assert numbers.signed(0.0, "g") == "0 g"
     assert numbers.signed(0.2, "g") == "+0.2000 g"
     assert numbers.given(0.055, "g") == "0.055 g"

@@ -25,9 +25,13 @@ def number(value: float | None, digits: int = _DIGITS) -> str:
     return f"{value:.{max(digits - 1 - power, 0)}f}"
 
 
-def quantity(value: float | None, unit: str) -> str:
-    """A number with its unit; the unit `1` is not written."""
-    text = number(value)
+def quantity(value: float | None, unit: str, beside: float | None = None) -> str:
+    """A number with its unit; the unit `1` is not written.
+
+    `beside` is a number that somebody else wrote: ours has as many digits as that where they are more.
+    """
+    theirs = 0 if beside is None else len(f"{abs(beside):g}".partition("e")[0].replace(".", "").lstrip("0"))
+    text = number(value, max(_DIGITS, theirs))
     return text if value is None or unit in ("", "1") else f"{text} {unit}"
 
 

@@ -190,7 +190,7 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
         first=first,
         name=criterion.name,
         case=criterion.case,
-        value=quantity(criterion.value, unit),
+        value=quantity(criterion.value, unit, criterion.published),
         limit=with_unit(criterion.limit, unit) or "none",
         assumed=criterion.source == words.ASSUMED,
         margin=signed(criterion.margin, unit),

@@ -114,7 +114,7 @@ def _criteria(spec: SpecVerdict, *, wide: bool) -> Table:
         if wide:
             cells.append(Text(criterion.signal or ""))
         cells += [
-            Text(quantity(criterion.value, criterion.unit)),
+            Text(quantity(criterion.value, criterion.unit, criterion.published)),
             Text(_limit(criterion)),
             Text(_margin(criterion)),
             Text(given(criterion.published, "")),
