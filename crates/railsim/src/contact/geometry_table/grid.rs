@@ -65,6 +65,6 @@ impl Shifts {
             return Some((self.wide + i, x - i as f64));
         }
         let x = (dy + SHIFT_RANGE) * (1.0 / INWARD_STEP) + self.wide as f64;
-        (x >= 0.0 && x < self.wide as f64).then(|| (x as usize, x - (x as usize) as f64))
+        (x >= 0.0 && x < self.wide as f64).then_some((x as usize, x - (x as usize) as f64))
     }
 }
