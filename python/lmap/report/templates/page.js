@@ -154,6 +154,11 @@
     figures.push(figure);
   });
 
+  // What is in sight at once: a picture of the page that is taken as it opens shows it too.
+  figures.forEach(function (figure) {
+    if (figure.node.getBoundingClientRect().top < window.innerHeight) { draw(figure); }
+  });
+
   if ("IntersectionObserver" in window) {
     var observer = new IntersectionObserver(function (entries) {
       entries.forEach(function (entry) {
