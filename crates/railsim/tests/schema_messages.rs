@@ -467,7 +467,7 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/run/spede",
             json!(3),
-            "run.spede: found an unknown key; allowed: contact, creep, disturbance, drive, friction, gravity, hold, \
+            "run.spede: found an unknown key; allowed: contact, couplers, creep, disturbance, drive, friction, gravity, hold, \
          integrator, kind, load, load_steps, output_step, place, search, speed, speeds, start, train, wheel_profile (did you mean speeds?)",
         ),
     ]
