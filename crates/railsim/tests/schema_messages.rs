@@ -33,7 +33,7 @@ const VEHICLES: &[(&str, &str, &str)] = &[
     (
         "damping = 1e5",
         "dampign = 1e5",
-        "68: vehicle.contact.dampign: found an unknown key; allowed: damping, poisson, \
+        "68: vehicle.contact.dampign: found an unknown key; allowed: averaging_load, damping, poisson, \
          youngs_modulus (did you mean damping?)",
     ),
     ("wheel_profile = \"round\"", "", "?: vehicle.wheel_profile: found nothing; allowed: a text"),
