@@ -109,6 +109,10 @@ def sweep(
     if others:
         raise InputProblem(Problem(found=f"{1 + len(others)} specs", allowed="one spec"))
     variants = grid([Variation(key, tuple(values)) for key, values in vary.items()])
+    if not variants:
+        raise InputProblem(
+            Problem(key=("--vary",), found="no values", allowed="one value or more of each key")
+        )
     fixed = overrides.checked(set or {})
     both = sorted(fixed.keys() & vary.keys())
     if both:

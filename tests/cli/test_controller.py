@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -78,6 +79,7 @@ def one(name: str) -> SpecVerdict:
     return spec
 
 
+@pytest.mark.slow
 def test_the_example_gives_what_the_vehicles_own_controller_gives() -> None:
     spec = one(SPEC)
     own, theirs = spec.cases
@@ -272,6 +274,7 @@ def with_fmu(place: Path) -> Callable[..., Path]:
     return make
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_an_fmu_gives_what_the_same_law_in_python_and_the_vehicles_own_gives(
     version: int, place: Path, with_fmu: Callable[..., Path]
@@ -390,6 +393,13 @@ def test_an_fmu_that_is_missing_or_no_archive_is_one_message(
     assert '"slip.fmu", which is no file' in message()
     (place / "slip.fmu").write_text("no zip")
     assert '"slip.fmu", which is no zip archive' in message()
+    with zipfile.ZipFile(place / "slip.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
+    sealed = bytearray((place / "slip.fmu").read_bytes())
+    sealed[6] |= 1  # encrypted, say its local and its central header
+    sealed[sealed.find(b"PK\x01\x02") + 8] |= 1
+    (place / "slip.fmu").write_bytes(sealed)
+    assert "whose modelDescription.xml cannot be unpacked" in message()
 
 
 def test_an_fmu_without_fmpy_says_how_to_get_it(

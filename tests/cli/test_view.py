@@ -93,6 +93,7 @@ def test_bad_input_is_one_message_and_no_page(
     assert [path.name for path in tmp_path.iterdir()] == ["text.parquet"]
 
 
+@pytest.mark.slow
 def test_the_check_waits_for_a_person_and_passes_with_the_lines_that_it_printed(tmp_path: Path) -> None:
     done = run(tmp_path, "check", "view", "--json", "--report", "out")
     assert done.returncode == 1

@@ -62,6 +62,8 @@ def test_a_law_sees_its_channels_and_its_torque_arrives() -> None:
         ([0.0] * 6, "an answer of type list"),
         ({"notch": 8}, "`notch`"),
         ({"torque": "full"}, "neither a number nor numbers"),
+        ({"torque": "123456"}, "neither a number nor numbers"),
+        ({"torque": 10**400}, "neither a number nor numbers"),
     ],
 )
 def test_a_bad_answer_is_one_message_that_names_the_law(answer: Any, message: str) -> None:

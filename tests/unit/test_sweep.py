@@ -138,6 +138,7 @@ class TestOnTheStandIn:
         [
             ({"yaw_damper.xc": [1.0, 2.0]}, {}, "yaw_damper.xc"),
             ({"run.speed_kmh": [90]}, {"run.speed_kmh": 80}, "which is set"),
+            ({"run.speed_kmh": []}, {}, "no values"),
             ({"run.speed_kmh": [90]}, {"run.speed": 80}, "one way of writing it"),
             ({"run.speed_kmh": [math.nan]}, {}, "a finite number"),
         ],

@@ -168,6 +168,7 @@ def sliding(found: contact.Contacts, row: dict[str, str], side: float) -> Array:
     return np.stack([velocity[:, 0], lateral, turning[1] * sin + turning[2] * cos]) / speed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("side", "letter"), [(-1.0, "L"), (1.0, "R")])
 def test_manchester_a22_forces(side: float, letter: str, compare: Compare) -> None:
     """At least 18 of 21 rows of a side: normal force within 1 %, both creep forces within 10 % of friction times load.

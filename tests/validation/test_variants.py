@@ -27,6 +27,7 @@ def frames(store: Store, jobs: int, speeds: list[float]) -> dict[str, bytes]:
     return {path.stem: path.read_bytes() for path in sorted(store.folder.glob("*.parquet"))}
 
 
+@pytest.mark.slow
 def test_one_and_two_threads_together_and_alone_give_the_same_bytes() -> None:
     speeds = [100.0, 110.0, 120.0]
     one, two, first = open_store(cache=False), open_store(cache=False), open_store(cache=False)

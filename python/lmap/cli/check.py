@@ -43,7 +43,7 @@ def check(
 
     What has run before, unchanged, is not run again (lmap cache), but for runs under a control law of the spec's own
     (run.controller: Python or an FMU), which are never kept. Progress goes to stderr. Exit code: 0 everything
-    passes, 1 something fails or waits, 2 bad input or not to be judged, 130 stopped by Ctrl-C.
+    passes, 1 something fails, waits or is not assessed, 2 bad input or not to be judged, 130 stopped by Ctrl-C.
 
     Example: lmap check hunting --report out/ --set secondary.kz=5e5 --jobs 2
     """

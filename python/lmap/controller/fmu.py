@@ -12,6 +12,7 @@ import os
 import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -134,6 +135,12 @@ def _opened(path: Path, name: str) -> tuple[ET.Element, list[str]]:
         raise _problem(name, "without modelDescription.xml") from None
     except ET.ParseError as error:
         raise _problem(name, f"whose modelDescription.xml cannot be read: {error}") from None
+    except (
+        zlib.error,
+        RuntimeError,
+        NotImplementedError,
+    ) as error:  # damaged, encrypted, packed in another way
+        raise _problem(name, f"whose modelDescription.xml cannot be unpacked: {_line(error)}") from None
 
 
 def _fmpy(name: str) -> ModuleType:
@@ -155,7 +162,10 @@ class Running:
 
         self._unit, self._layout = unit, layout
         self._said = ""
-        self._folder = tempfile.TemporaryDirectory(prefix="lmap.fmu.")
+        try:
+            self._folder = tempfile.TemporaryDirectory(prefix="lmap.fmu.")
+        except OSError as error:
+            raise _problem(unit.name, f"which cannot be unpacked: {_line(error)}") from None
         self._instance: Any = None
         of = unit.variables("input", "output", "parameter")
         self._inputs = [of[name].valueReference for name, _ in layout.inputs]

@@ -74,7 +74,9 @@ def _numbers(key: str, value: Any, count: int) -> list[float]:
         if not hasattr(value, "__iter__"):
             return [float(value)] * count
         numbers = [float(one) for one in value]
-    except (TypeError, ValueError):
+        if isinstance(value, str | bytes) or any(isinstance(one, str | bytes) for one in value):
+            raise TypeError
+    except (TypeError, ValueError, OverflowError):
         raise LawFailed(f"{key} = {value!r}, neither a number nor numbers") from None
     if len(numbers) != count or count == 1:
         noun = f"{key}, a single number" if count == 1 else f"{count} wheelsets"

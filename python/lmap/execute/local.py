@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import heapq
 import itertools
 import os
@@ -15,7 +16,7 @@ from typing import Any, NamedTuple
 import polars as pl
 
 from lmap import toml
-from lmap.errors import Problem
+from lmap.errors import InputProblem, Problem
 from lmap.execute.cost import estimate
 from lmap.execute.progress import Entry, Progress
 from lmap.execute.store import Store, StoredFrame
@@ -144,14 +145,14 @@ class Queue:
             self._fill()
 
     def _begin(self, control: Control) -> dict[str, Any]:
-        running = control.start()
+        law = {"name": control.name, "channels": control.channels, "outputs": control.outputs}
+        try:
+            running = control.start()
+        except InputProblem as problem:
+            # It began when the case was prepared: now it is this run's failure, told as any other of a law.
+            return {**law, "sample": functools.partial(_refuse, str(problem.problems[0].found))}
         self._laws.callback(running.close)
-        return {
-            "name": control.name,
-            "channels": control.channels,
-            "outputs": control.outputs,
-            "sample": running.sample,
-        }
+        return {**law, "sample": running.sample}
 
     def _fill(self) -> None:
         while self._ahead is None or len(self._heap) < self._ahead:
@@ -160,6 +161,10 @@ class Queue:
                 self._about = 0  # now it is known
                 return
             heapq.heappush(self._heap, (-estimate(named.case), next(self._taken), named))
+
+
+def _refuse(why: str, *_: object) -> None:
+    raise RuntimeError(why)
 
 
 def _entry(named: Named, cost: float) -> Entry:

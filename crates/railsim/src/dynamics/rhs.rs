@@ -208,19 +208,21 @@ impl<'m> VehicleSystem<'m> {
         let mut cases = scratch.creep_cases.iter_mut();
         for (w, wheels) in scratch.wheels.iter_mut().enumerate() {
             for (side, wheel) in wheels.iter_mut().enumerate() {
-                let mut count = 0;
+                // By its zone: a contact keeps its own memory when another one comes or goes.
+                let mut touches = [false; MAX_CONTACTS];
                 for contact in wheel.contacts_mut().iter_mut().filter(|c| c.creeps) {
                     let Some(case) = cases.next() else { return };
                     case.mu *= acting.sand();
                     let steady = [case.creepage.xi, case.creepage.eta];
                     let known = Some((contact.placed.slip, steady, case.patch.a));
-                    let given = acting.creepage(self.model, self.map, (w, side, count), known, x);
+                    let zone = contact.geometry.map_or(0, |point| point.zone as usize);
+                    let given = acting.creepage(self.model, self.map, (w, side, zone), known, x);
                     [case.creepage.xi, case.creepage.eta] = given;
                     contact.placed.creepage = case.creepage;
-                    count += 1;
+                    touches[zone] = true;
                 }
-                for none in count..MAX_CONTACTS {
-                    acting.creepage(self.model, self.map, (w, side, none), None, x);
+                for (zone, _) in touches.iter().enumerate().filter(|(_, touches)| !**touches) {
+                    acting.creepage(self.model, self.map, (w, side, zone), None, x);
                 }
             }
         }

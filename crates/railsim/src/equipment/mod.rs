@@ -331,11 +331,13 @@ impl<'m> Acting<'m> {
             && let (Some(data), Some(brake)) = (&self.design.air_brake, &self.design.dynamic_brake)
         {
             let wanted = drive.dynamic_brake.at(t) * brake.max_effort;
+            // What the motors hold back with, either way that the vehicle rolls.
+            let back = if v < 0.0 { 1.0 } else { -1.0 };
             let given: f64 = self
                 .torques
                 .iter()
                 .zip(&model.wheelsets)
-                .map(|(lag, set)| (-lag.at(t, self.lag)).max(0.0) / set.radius)
+                .map(|(lag, set)| (back * lag.at(t, self.lag)).max(0.0) / set.radius)
                 .sum();
             let missing = if wanted > 0.0 { (wanted - given).max(0.0) } else { 0.0 };
             independent = independent.max(Pneumatics::pressure_for(data, missing, self.wheelsets, v));

@@ -1,5 +1,5 @@
 //! At rest wheels stick. Below [`STEADY`] the creepage that the creep law is asked for is the tangential deflection of the contact
-//! over its half-length a (each contact of a wheel has its own, numbered from the tread to the flange tip), which follows the sliding velocity w by `dz/dt = w - max(V, |w|) z/a`: rolling, that is the steady creepage w/V
+//! over its half-length a (each zone of a wheel's contacts has its own, so that one keeps it when another comes or goes), which follows the sliding velocity w by `dz/dt = w - max(V, |w|) z/a`: rolling, that is the steady creepage w/V
 //! after rolling some a; at rest it is a spring with the slope of the creep law, so that a wheel stands on a gradient
 //! without creeping, and slides beyond the friction limit. In the state stands z less the way that the coordinates of axle and track
 //! say, so that the spring is one between positions, which the implicit scheme knows (transient rolling contact to first order: Knothe and Gross-Thebing, Vehicle
@@ -50,7 +50,7 @@ impl Acting<'_> {
         ]
     }
 
-    /// Creepage (longitudinal, lateral) of contact `n` of a wheel that slides with `slip` (m/s) on a patch of half-length `a`,
+    /// Creepage (longitudinal, lateral) of the contact in zone `n` of a wheel that slides with `slip` (m/s) on a patch of half-length `a`,
     /// given the steady one; without a contact (`None`) the deflection is let go. Keeps the rate of the contact's memory.
     pub(crate) fn creepage(
         &mut self,

@@ -258,7 +258,13 @@ impl Wagons {
         let gear = &self.written.coupler;
         let solid = if gear.travel.is_some() { gear.solid_stiffness } else { 0.0 };
         let k = (1.0 + gear.friction) * gear.stiffness + solid;
-        let rate = |m: &Mass| ((4.0 * k + m.brake_force / STICK) / (m.mass + m.rotary_mass)).sqrt();
+        // The larger root of rate^2 = c/m rate + k/m: sqrt(k/m) without damping, c/m where that rules.
+        let rate = |m: &Mass| {
+            let mass = m.mass + m.rotary_mass;
+            let (block, half) = (m.brake_force / STICK, 0.5 / mass);
+            let damped = half * (4.0 * gear.damping + STICK_DAMPING * block);
+            damped + (damped * damped + (4.0 * k + block) / mass).sqrt()
+        };
         self.masses.iter().map(rate).fold(0.0, f64::max)
     }
 }
