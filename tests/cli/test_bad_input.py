@@ -170,6 +170,7 @@ def test_a_unit_of_another_quantity(messages: Callable[..., list[str]]) -> None:
     )
 
 
+@pytest.mark.slow
 def test_every_message_of_several_specs(messages: Callable[..., list[str]]) -> None:
     shutil.copy(SPEC, "specs/other.toml")
     spoil(SPEC, "friction = 0.4", "friction = -0.4")

@@ -297,6 +297,7 @@ def test_ctrl_c_stops_long_before_the_end_and_leaves_nothing(toy: Path) -> None:
     assert sorted(toy.rglob("*")) == before
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_check_that_was_killed_goes_on_where_it_was(toy: Path) -> None:
     source = str(Path(importlib.util.find_spec("lmap").origin).parent.parent)  # type: ignore[union-attr, arg-type]

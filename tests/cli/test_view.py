@@ -44,6 +44,7 @@ def scene_of(page: Path) -> dict[str, object]:
     return scene
 
 
+@pytest.mark.slow
 def test_view_writes_one_page_with_modes_and_a_run(tmp_path: Path) -> None:
     frame = {"t": [0.0, 0.1, 0.2], "carbody.y": [0.0, 0.01, 0.0], "carbody.z": [-1.95] * 3}
     pl.DataFrame(frame).write_parquet(tmp_path / "r.parquet")
@@ -61,6 +62,7 @@ def test_view_writes_one_page_with_modes_and_a_run(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_view_says_what_it_finds_and_leaves_with_one(tmp_path: Path) -> None:
     done = run(tmp_path, "view", "coco134", "--set", "wheelset.tape_half_distance=0.85")
     assert done.returncode == 1

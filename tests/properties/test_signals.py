@@ -34,6 +34,7 @@ def test_sustained_is_the_brute_force_maximum_of_window_minima(
     assert ours == max(x[i : i + steps + 1].min() for i in range(len(x) - steps))
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(values)
 def test_sustained_falls_as_the_window_grows(x: npt.NDArray[np.float64]) -> None:
@@ -42,6 +43,7 @@ def test_sustained_falls_as_the_window_grows(x: npt.NDArray[np.float64]) -> None
     assert read[0] <= x.max()
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(values)
 def test_sustained_is_never_above_the_sliding_mean(x: npt.NDArray[np.float64]) -> None:

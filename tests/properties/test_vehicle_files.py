@@ -83,6 +83,7 @@ def resolved(vehicle: Any) -> dict[str, Any] | None:
     return summary
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(data=st.data(), name=st.sampled_from(NAMES))
 def test_a_damaged_vehicle_is_a_vehicle_or_refused(data: st.DataObject, name: str) -> None:
