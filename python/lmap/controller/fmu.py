@@ -135,11 +135,7 @@ def _opened(path: Path, name: str) -> tuple[ET.Element, list[str]]:
         raise _problem(name, "without modelDescription.xml") from None
     except ET.ParseError as error:
         raise _problem(name, f"whose modelDescription.xml cannot be read: {error}") from None
-    except (
-        zlib.error,
-        RuntimeError,
-        NotImplementedError,
-    ) as error:  # damaged, encrypted, packed in another way
+    except (zlib.error, RuntimeError) as error:  # damaged; encrypted or packed in an unknown way
         raise _problem(name, f"whose modelDescription.xml cannot be unpacked: {_line(error)}") from None
 
 

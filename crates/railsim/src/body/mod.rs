@@ -86,7 +86,7 @@ impl Kinematics {
 ///
 /// `turns` are sine and cosine of roll, pitch and yaw; `spins` is true for a wheelset, whose axes carry yaw and roll but not
 /// its spin; `level` where the track frame is known to be inertial axes moved along x, which saves the turning.
-#[allow(clippy::too_many_arguments)]
+#[allow(clippy::too_many_arguments)] // one stage of the right-hand side, all of it plain data
 #[inline(always)]
 pub(crate) fn kinematics(
     q: &[f64; 6],

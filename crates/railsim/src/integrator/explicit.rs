@@ -40,10 +40,13 @@ impl Explicit {
         for (stage, row) in a.iter().enumerate() {
             let (known, rest) = self.slopes.split_at_mut(stage + 1);
             let mut terms = known.iter().zip(*row).filter(|(_, weight)| **weight != 0.0);
-            if let Some((k, weight)) = terms.next() {
-                for ((to, from), k) in self.argument.iter_mut().zip(&*x).zip(k) {
-                    *to = from + h * weight * k;
+            match terms.next() {
+                Some((k, weight)) => {
+                    for ((to, from), k) in self.argument.iter_mut().zip(&*x).zip(k) {
+                        *to = from + h * weight * k;
+                    }
                 }
+                None => self.argument.copy_from_slice(x),
             }
             for (k, weight) in terms {
                 add(&mut self.argument, h * weight, k);
