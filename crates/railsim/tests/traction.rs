@@ -7,8 +7,9 @@
 mod common;
 
 use common::{case, coco134, column};
+use railsim::contact::geometry_table::{MAX_CONTACTS, Zone};
 use railsim::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
-use railsim::equipment::Acting;
+use railsim::equipment::{Acting, Quantity};
 use railsim::integrator::System;
 use railsim::run::{Ended, Free, Law, Outcome, Outside, simulate, simulate_controlled};
 use railsim::schema::Case;
@@ -114,6 +115,147 @@ fn at_rest_all_contacts_of_a_wheel_stick() {
     system.rhs(0.0, &x, &mut dx);
     println!("force along over normal force: {:?}", held(&system));
     assert!(held(&system).iter().all(|share| *share < -1e-3));
+}
+
+/// Each zone of a wheel remembers for itself: what the flange holds does not depend on whether the tread touches.
+#[test]
+fn a_flange_holds_what_it_held_when_the_tread_lifts() {
+    let case = case(&locomotive(json!({ "until": { "time": 1.0 } })));
+    let model = compile::model(&case).unwrap();
+    let mut x = equilibrium::solve(&model, 20.0, 0.0).unwrap();
+    let program = SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 0.0, acceleration: 0.0 };
+    let mut system = VehicleSystem::new(&model, program);
+    let acting = Acting::new(&model, model.equipment.as_deref().unwrap());
+    let own = model.map().size();
+    x.resize(own + acting.states(), 0.0);
+    let axle = model.map().q(model.bodies.len()).start;
+    let mut dx = vec![0.0; x.len()];
+    system.acting = Some(Box::new(acting));
+    let loaded = |system: &VehicleSystem<'_>| -> Vec<(Zone, f64)> {
+        let contacts = system.scratch.wheels[0][1].contacts();
+        contacts.iter().filter(|c| c.normal > 0.0).map(|c| (c.geometry.unwrap().zone, c.creep[0])).collect()
+    };
+    let found = (0..400).any(|_| {
+        x[axle + 1] += 5e-5;
+        system.acting.as_ref().unwrap().release(&model, &mut x);
+        system.rhs(0.0, &x, &mut dx);
+        loaded(&system).len() > 1
+    });
+    assert!(found, "no place with two contacts");
+    // The right flange of the first axle has been drawn along by 2 um, the tread has not.
+    x[own + 2 * (MAX_CONTACTS + Zone::Flange as usize)] += 2e-6;
+    system.rhs(0.0, &x, &mut dx);
+    let both = loaded(&system);
+    // Up in steps, and outward where the flange would come off: until it is alone.
+    let alone = (0..400).find_map(|_| {
+        let flange = |found: &[(Zone, f64)]| found.iter().any(|(zone, _)| *zone == Zone::Flange);
+        if flange(&loaded(&system)) {
+            x[axle + 2] -= 2e-5;
+        } else {
+            x[axle + 1] += 2e-5;
+        }
+        system.rhs(0.0, &x, &mut dx);
+        let found = loaded(&system);
+        (found.len() == 1 && flange(&found)).then_some(found)
+    });
+    let alone = alone.expect("a place where the flange alone carries");
+    println!("force along: {both:?}, the flange alone {alone:?}");
+    assert_eq!([both[0].0, both[1].0], [Zone::Tread, Zone::Flange]);
+    assert!(both[0].1.abs() < 1e-3 * both[1].1.abs() && both[1].1 < -100.0);
+    // A patch that just touches holds little; without a memory of its own it would hold nothing.
+    assert!(alone[0].1 < -1.0);
+}
+
+/// Air brakes make up what motors cannot give: nothing where these give all, the same whichever way the vehicle rolls.
+#[test]
+fn blending_counts_what_the_motors_hold_back_with_either_way() {
+    let mut value = locomotive(json!({ "dynamic_brake": 0.5, "blending": true, "until": { "time": 1.0 } }));
+    let mut cylinder = |speed: f64| {
+        value["run"]["speed"] = json!(speed);
+        let case = case(&value);
+        let model = compile::model(&case).unwrap();
+        let rolling = equilibrium::solve(&model, 20.0, speed).unwrap();
+        let system = VehicleSystem::new(&model, SpeedProgram { s: 20.0, speed, acceleration: 0.0 });
+        [1.0, -1.0].map(|way| {
+            let mut x = rolling.clone();
+            for i in 0..model.count() {
+                x[model.map().u(i)].iter_mut().for_each(|u| *u *= way);
+            }
+            let mut acting = Acting::new(&model, model.equipment.as_deref().unwrap());
+            x.resize(model.map().size() + acting.states(), 0.0);
+            for i in 0..6000 {
+                acting.sample(&model, 0.01 * f64::from(i), &x);
+            }
+            acting.value(Quantity::Cylinder, &model, 60.0, &x, &system.scratch)
+        })
+    };
+    // At 3 m/s the motors give all of it; at 0.7 m/s half of it, 1.39 m/s being where the dynamic brake begins to fade.
+    let (fast, slow) = (cylinder(3.0), cylinder(0.7));
+    println!("cylinder pressure at 3 m/s {fast:?} Pa, at 0.7 m/s {slow:?} Pa");
+    // Up to 9.9 kPa the pistons only carry their return springs.
+    assert!(fast.iter().all(|p| *p < 9.9e3), "{fast:?}");
+    assert!(slow[0] > 2e4 && (slow[0] / slow[1] - 1.0).abs() < 1e-9, "{slow:?}");
+}
+
+/// In the full curve a coupler that leads to an equal neighbour stands at L/(2R) to the body, to the inside; its force hangs on its
+/// pivot, under the centre of mass. Front and rear, pull and push, both ways round.
+#[test]
+fn couplers_pull_at_their_angle_on_their_levers() {
+    const FORCE: f64 = 2e5;
+    const SHANK: f64 = 0.75;
+    for radius in [300.0, -300.0] {
+        let mut value = locomotive(json!({ "until": { "time": 1.0 } }));
+        value["run"]["speed"] = json!(1.0);
+        value["track"]["layout"] = json!([{ "kind": "curve", "length": 1000.0, "radius": radius }]);
+        let length = value["vehicle"]["outline"]["length_over_couplers"].as_f64().unwrap();
+        let height = value["vehicle"]["outline"]["coupler_height"].as_f64().unwrap();
+        let mut wrench = |front: f64, rear: f64| {
+            value["run"]["couplers"] =
+                json!({ "shank": SHANK, "front": [[0.0, front]], "rear": [[0.0, rear]] });
+            let case = case(&value);
+            let model = compile::model(&case).unwrap();
+            let mut x = equilibrium::solve(&model, 500.0, 1.0).unwrap();
+            let acting = Acting::new(&model, model.equipment.as_deref().unwrap());
+            let body = acting.body();
+            // The body as its neighbours stand: bogie centres on the centre line, upright.
+            let place = |name: &str| model.bodies.iter().find(|b| b.name == name).unwrap().position.x;
+            let pivots = place("bogie1") - place("bogie2");
+            let q = &mut x[model.map().q(body)];
+            q[1] = pivots * pivots / (8.0 * radius);
+            q[3..].fill(0.0);
+            let mut system =
+                VehicleSystem::new(&model, SpeedProgram { s: 500.0, speed: 1.0, acceleration: 0.0 });
+            system.holding = false;
+            x.resize(model.map().size() + acting.states(), 0.0);
+            system.acting = Some(Box::new(acting));
+            let mut dx = vec![0.0; x.len()];
+            system.rhs(0.0, &x, &mut dx);
+            let (wrench, R) = (system.scratch.wrench[body], system.scratch.kinematics[body].pose.R);
+            (R.tr_mul(&wrench.f), R.tr_mul(&wrench.m), -model.bodies[body].position.z)
+        };
+        let (f0, m0, above) = wrench(0.0, 0.0);
+        let angle = length / (2.0 * radius);
+        let (along, across) = (FORCE * angle.cos(), FORCE * angle.sin());
+        let arm = 0.5 * length - SHANK;
+        for (front, rear) in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 1.0)] {
+            let (f, m, _) = wrench(front * FORCE, rear * FORCE);
+            let (f, m) = (f - f0, m - m0);
+            let hand = [
+                (f.x, (front - rear) * along, FORCE),
+                (f.y, (front + rear) * across, across),
+                // Below the centre of mass by the difference of heights.
+                (m.y, (front - rear) * along * (above - height), FORCE * (above - height)),
+                (m.z, (front - rear) * across * arm, across * arm),
+            ];
+            for (i, (ours, theirs, scale)) in hand.into_iter().enumerate() {
+                println!("R {radius}, front {front}, rear {rear}, {i}: {ours:.1} by hand {theirs:.1}");
+                assert!(
+                    (ours - theirs).abs() < 0.005 * scale.abs(),
+                    "{i} of {front} {rear}: {ours} {theirs}"
+                );
+            }
+        }
+    }
 }
 
 /// In a tight curve an outer wheel stands on tread and flange.
