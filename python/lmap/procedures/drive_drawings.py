@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from lmap.formulas import falling_friction, notch_effort, polach_adhesion
 from lmap.procedures.base import wheelsets
 from lmap.spec.case import VehicleData
@@ -121,16 +123,9 @@ def _effort(frames: Frames, runs: Runs, vehicle: VehicleData) -> Drawing | None:
 def _notch(data: Mapping[str, Any], notch: int, speed: float) -> float:
     curves = data.get("notch_curves")
     if curves:
-        return _between(curves[notch - 1], speed)
+        speeds, efforts = np.array(curves[notch - 1], dtype=float).T
+        return float(np.interp(speed, speeds, efforts))
     return notch_effort(notch / data["notches"], speed, data["max_effort"], data["power_at_rail"])
-
-
-def _between(points: Sequence[Sequence[float]], x: float) -> float:
-    """Straight between points, level beyond."""
-    for (x0, y0), (x1, y1) in pairwise(points):
-        if x <= x1:
-            return y0 if x <= x0 else y0 + (y1 - y0) * (x - x0) / (x1 - x0)
-    return points[-1][1]
 
 
 def _adhesion(frames: Frames, runs: Runs) -> Drawing | None:

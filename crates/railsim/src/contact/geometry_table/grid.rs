@@ -65,6 +65,37 @@ impl Shifts {
             return Some((self.wide + i, x - i as f64));
         }
         let x = (dy + SHIFT_RANGE) * (1.0 / INWARD_STEP) + self.wide as f64;
-        (x >= 0.0 && x < self.wide as f64).then_some((x as usize, x - (x as usize) as f64))
+        // A shift just inward of the close nodes may round to the first of them: it is the end of the last wide cell.
+        (x >= 0.0 && dy < 0.0 && self.wide > 0).then(|| {
+            let i = (x as usize).min(self.wide - 1);
+            (i, x - i as f64)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every shift within reach has its cell, also those that differ from a seam by a rounding; none outside has.
+    #[test]
+    fn no_gap_between_wide_and_close_cells() {
+        let grid = Shifts { wide: 66, close: 400 };
+        for (from, to) in [(-SHIFT_RANGE, 0.0), (-0.053, 1e-12), (0.02, -1e-12)] {
+            let mut dy = from + to;
+            (0..40).for_each(|_| dy = dy.next_down());
+            for _ in 0..80 {
+                let (i, part) = grid.place(dy).unwrap_or_else(|| panic!("{dy:e}"));
+                let next = grid.from(0.0, i + 1);
+                let at = grid.from(0.0, i) + part * (next - grid.from(0.0, i));
+                assert!((at - dy).abs() < 1e-15 && (-1e-9..=1.0 + 1e-9).contains(&part), "{dy:e} {i} {part}");
+                dy = dy.next_up();
+            }
+        }
+        let none = Shifts { wide: 0, close: 400 };
+        for outside in [-0.0531, 0.0201, f64::NAN] {
+            assert!(grid.place(outside).is_none() && none.place(outside).is_none());
+        }
+        assert!(none.place(-0.0201).is_none() && none.place(-0.02).is_some());
     }
 }
