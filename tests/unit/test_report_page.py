@@ -318,6 +318,14 @@ def test_a_page_of_many_tests_has_a_third_of_the_points_and_says_so() -> None:
     assert longest / 4 < max(points(many)) < longest / 2
 
 
+def test_a_number_without_a_course_has_no_place_and_no_figure() -> None:
+    alone = sample.case("lint", duration=0.0)
+    assert alone.frame.height == 1
+    spec = sample.judged(alone, criteria=(sample.SHIFT,))
+    assert [(one.outcome, one.at) for one in spec.criteria] == [(Outcome.PASS, None)]
+    assert [figure for figure in figures(spec) if figure.criterion is not None] == []
+
+
 def folder_of(acceptance: Acceptance, folder: Path) -> dict[str, bytes]:
     write_report(acceptance, folder)
     return {

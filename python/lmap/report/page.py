@@ -213,6 +213,7 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
 
 def _figures(position: int, spec: SpecVerdict, detail: float) -> list[dict[str, Any]]:
     from lmap.report.figures import FIGURES
+    from lmap.report.figures.criterion import NEAR
     from lmap.report.figures.plot import plotly
 
     shown: list[dict[str, Any]] = []
@@ -223,7 +224,7 @@ def _figures(position: int, spec: SpecVerdict, detail: float) -> list[dict[str, 
                 "stretch": view.stretch,
                 "caption": view.caption,
                 "message": view.message,
-                **plotly(view, detail),
+                **plotly(view, 1.0 if view.stretch == NEAR else detail),
             }
             for view in figure.views
         ]
