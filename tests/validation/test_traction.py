@@ -241,7 +241,7 @@ def test_coupler_forces_and_angles_of_the_s_curve(compare: Compare) -> None:
         for way in ("draft", "buff"):
             y, phi, psi, angle = (
                 mean_at(frames[way], channel, begin, last)
-                for channel in ("carbody.y", "carbody.phi", "carbody.psi", f"coupler.{name}.angle")
+                for channel in ("carbody.y", "carbody.phi", "carbody.psi", f"coupler.{name}.yaw")
             )
             aside = y - 1.05 * phi - 13.2**2 / (8 * radius) + end * (length / 2 - 0.8) * psi
             closed = length / (2 * radius) - aside / 1.6 - end * psi
