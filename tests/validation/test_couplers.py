@@ -23,6 +23,7 @@ LENGTH, PIVOTS, SHANK = 22.0, 13.2, 0.8
 """Over couplers, between bogie centres, from a coupler's pivot to its pulling face, m: coco134."""
 BELOW = 1.95 - 0.90
 """Couplers under the car body's centre of mass, m."""
+ENDS = {"front": 1.0, "rear": -1.0}
 
 
 def passed(layout: list[dict[str, Any]]) -> pl.DataFrame:
@@ -50,9 +51,6 @@ def stands(frame: pl.DataFrame, name: str) -> float:
 def moved(frame: pl.DataFrame, part: str) -> float:
     """Where the car body stands against where it stood on straight level track."""
     return stands(frame, f"carbody.{part}") - float(frame[f"carbody.{part}"][0])
-
-
-ENDS = {"front": 1.0, "rear": -1.0}
 
 
 @pytest.mark.parametrize("radius", [300.0, -300.0])
@@ -89,9 +87,9 @@ def test_over_a_round_hump_and_through_a_dip_too(gradient: float, compare: Compa
     z, theta = (moved(frame, part) for part in ("z", "theta"))
     for end, way in ENDS.items():
         low = z + PIVOTS**2 / (8 * radius) - way * (LENGTH / 2 - SHANK) * theta
-        closed = LENGTH / (2 * radius) + low / (2 * SHANK) - way * theta
+        closed = coupler_angle(LENGTH, radius) + low / (2 * SHANK) - way * theta
         ours = stands(frame, f"coupler.{end}.pitch")
-        what = f"R {radius:.0f} m, {end}, degrees; on its chord {math.degrees(LENGTH / (2 * radius)):.3f}"
+        what = f"R {radius:.0f} m, {end}, degrees; on its chord {math.degrees(coupler_angle(LENGTH, radius)):.3f}"
         compare(what, math.degrees(ours), math.degrees(closed), 0.01, "L/2R, body where it stands")
         assert abs(float(frame[f"coupler.{end}.yaw"].abs().max())) < 1e-6  # type: ignore[arg-type]
         assert abs(float(frame["coupler.rear.pitch"][0])) < 1e-6

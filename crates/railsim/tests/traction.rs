@@ -277,6 +277,21 @@ fn couplers_of_a_run_without_a_driver_only_point() {
     }
 }
 
+/// A neighbour of a wagon without bogies stands on its wheelsets.
+#[test]
+fn a_neighbour_without_bogies_stands_on_its_wheelsets() {
+    let mut value = coco134();
+    value["vehicle"] = common::read_toml("vehicles/wagon2.toml");
+    value["vehicle"]["outline"] =
+        json!({ "length_over_couplers": 14.0, "coupler_height": 1.0, "width": 3.0, "height": 4.0 });
+    value["run"]["wheel_profile"] = value["vehicle"]["wheel_profile"].clone();
+    value["profiles"]["s1002"] = common::profile("s1002", "wheel");
+    value["run"]["couplers"] = json!({ "shank": 0.5 });
+    let model = compile::model(&case(&value)).unwrap();
+    let wheelbase = model.wheelsets[0].body.position.x - model.wheelsets[1].body.position.x;
+    assert_eq!(model.angled.unwrap().pivots, wheelbase.abs());
+}
+
 /// In a tight curve an outer wheel stands on tread and flange.
 #[test]
 fn a_vehicle_that_stands_on_flanges_does_not_creep() {
