@@ -169,7 +169,8 @@ fn room_ahead(case: &Case, model: &Model, reach: f64) -> Result<()> {
         return Ok(());
     }
     let found = format!("a layout that ends in a curve at {sum} m, with run.couplers");
-    let allowed = format!("one of {needed} m or more: the neighbour in front is on it when the run ends");
+    let allowed =
+        format!("one of {} m or more: the neighbour in front is on it when the run ends", needed.ceil());
     Err(Error::input(Fault::new(KeyPath::of("track.layout"), found, allowed)))
 }
 
