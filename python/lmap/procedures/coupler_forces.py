@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from lmap.errors import InputProblem, JudgementProblem, Problem
+from lmap.errors import InputProblem, JudgementProblem, KeyPath, Problem
 from lmap.formulas import coupler_angle, coupler_unloading
 from lmap.procedures.base import CaseFigures, at_rest, settings, unloading_units, with_unloading
 from lmap.spec.case import Case, VehicleData, build, merged
@@ -110,6 +110,11 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
         run = merged({**stepping, "couplers": _couplers(test, one)}, one.run)
         found.append(build(label=one.label, vehicle=vehicle, track=merged(spec.track, one.track), run=run))
     return found
+
+
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """The shank is written in `[test]`."""
+    return ("test", "shank") if key == ("run", "couplers", "shank") else key
 
 
 def _couplers(test: Settings, one: Stepped) -> dict[str, Any]:
