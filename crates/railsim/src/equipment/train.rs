@@ -149,6 +149,13 @@ impl Wagons {
         (between + 0.5) * self.written.length + (between + 1.0) * 0.5 * self.written.coupler.slack
     }
 
+    /// Brake pipe (m) between the driver's valve, in the middle of the vehicle of length `vehicle` (m, over its couplers), and the middle of
+    /// mass `i`, ahead of it or behind.
+    #[must_use]
+    pub fn pipe_length(&self, vehicle: f64, i: usize) -> f64 {
+        0.5 * vehicle + self.distance(i)
+    }
+
     /// Places the train at `speed` (m/s) about a vehicle whose front and rear couplers are at `places` (m), drawn out so that every gear
     /// just touches.
     pub fn place(&self, places: [f64; 2], speed: f64, x: &mut [f64]) {
