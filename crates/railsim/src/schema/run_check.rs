@@ -93,7 +93,7 @@ fn too_fast(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
     for found in speeds {
         let Some(v) = found.number().filter(|v| *v > MOST_SPEED) else { continue };
         let allowed = format!("at most {MOST_SPEED} m/s, which is {} km/h", 3.6 * MOST_SPEED);
-        let hint = format!("{v} km/h is {:.4} m/s", v / 3.6);
+        let hint = format!("{v} km/h is {} m/s", (v / 0.036).round() / 100.0);
         faults.push(Fault::new(found.at.clone(), format!("{v} m/s"), allowed).hint(hint));
     }
 }
