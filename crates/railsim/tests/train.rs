@@ -226,4 +226,10 @@ fn draft_gear_has_the_hysteresis_that_is_written() {
         assert!((draft_force(&gear, 0.03, 0.0, h) - factor * 2e5).abs() < 1e-6);
         assert!((draft_force(&gear, -0.03, 0.0, -h) + factor * 2e5).abs() < 1e-6);
     }
+    // Drawn and pushed, a gear that gives way faster than its force falls is let go, not turned round.
+    let damped = DraftGear { damping: 1e6, ..gear };
+    assert_eq!((draft_force(&damped, 0.011, -1.0, -1.0), draft_force(&damped, -0.011, 1.0, 1.0)), (0.0, 0.0));
+    for (e, rate, h) in [(f64::NAN, 0.0, 1.0), (0.03, f64::NAN, 1.0), (-0.03, 0.0, f64::NAN)] {
+        assert!(draft_force(&damped, e, rate, h).is_nan(), "{e} {rate} {h}");
+    }
 }
