@@ -53,7 +53,7 @@ impl RunKind {
 pub struct Run {
     /// What is done.
     pub kind: RunKind,
-    /// Speed, m/s; 0 stands. Of a ramp-down or bifurcation the speed at which it begins.
+    /// Speed, m/s, at most 200 (720 km/h); 0 stands. Of a ramp-down or bifurcation the speed at which it begins.
     #[schemars(extend("minimum" = 0, "unit" = "m/s"))]
     pub speed: f64,
     /// Coefficient of friction between wheel and rail: a number, or a table per rail, along the track, falling with the slip velocity.
@@ -114,7 +114,7 @@ pub struct Run {
     /// `time`: what the vehicle is coupled to.
     #[serde(default)]
     pub train: Option<Train>,
-    /// `time`: couplers at an angle, with their lateral forces. Without it what the train pulls with is along the track.
+    /// `time`: couplers at an angle: which, and with `drive` their lateral forces. Without it what the train pulls with is along the track.
     #[serde(default)]
     pub couplers: Option<Couplers>,
 }
