@@ -279,6 +279,22 @@ def test_a_report_that_cannot_be_written_leaves_the_table_and_no_folder(
         assert last == "lmap: the report cannot be written to a/out: No space left on device"
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+@pytest.mark.parametrize("arguments", [["check", "sway", "-q"], ["check", "sway", "-q", "--json"], ["list"]])
+def test_a_full_disk_behind_stdout_is_one_message(toy: Path, arguments: list[str]) -> None:
+    source = str(Path(importlib.util.find_spec("lmap").origin).parent.parent)  # type: ignore[union-attr, arg-type]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, str(FAKE), *arguments],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": source},
+            check=False,
+        )
+    assert (done.returncode, done.stderr) == (2, "lmap: stdout: No space left on device\n")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT between processes")
 def test_ctrl_c_stops_long_before_the_end_and_leaves_nothing(toy: Path) -> None:
     command = [sys.executable, str(FAKE), "--slow", "60", "check", "sway", "--report", "out"]
