@@ -158,7 +158,7 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
     return SpecVerdict(
         id=spec.id,
         title=spec.title,
-        file=prepared.loaded.asked.shown,
+        file=prepared.loaded.asked.recorded,
         procedure=spec.procedure,
         vehicle=prepared.vehicle.data.name,
         condition=spec.condition or "",

@@ -54,6 +54,11 @@ class Document:
         return files.shown(self.path)
 
     @property
+    def recorded(self) -> str:
+        """The path as reports keep it."""
+        return files.recorded(self.path)
+
+    @property
     def sha256(self) -> str:
         """Hash of the text."""
         return files.sha256(self.text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
-from commands import STOPPED, Ran, environment, stopped_by_ctrl_c
+from commands import STOPPED, Ran, contents, environment, stopped_by_ctrl_c
 
 from lmap import prepare
 
@@ -255,6 +256,36 @@ def test_a_report_that_cannot_be_written_leaves_the_table_and_no_folder(
     else:
         assert ran.code == 2
         assert last == "lmap: the report cannot be written to a/out: No space left on device"
+
+
+@pytest.mark.parametrize("place", [".", "sub", "../beside"])
+def test_reports_of_two_clones_hold_the_same_paths_and_none_of_the_machine(
+    lmap: Callable[..., Ran], toy: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    """The same check from the same place in each; a clone's own names appear nowhere."""
+    reports = []
+    for clone in ("first clone", "second clone"):
+        root = toy.parent / clone / "root"
+        shutil.copytree(toy, root)
+        here = root / place
+        here.mkdir(exist_ok=True)
+        monkeypatch.chdir(here)
+        spec = Path(os.path.relpath(root / "specs" / "sway.toml", here.resolve())).as_posix()
+        for given, out in ((spec, "relative"), (str(root / "specs" / "sway.toml"), "absolute")):
+            assert lmap("check", given, "--report", out, "--quiet").code == 0
+            assert lmap("sweep", given, "--vary", "run.speed_kmh=90,no", "-o", f"{out} sweep", "-q").code == 2
+        assert (
+            json.loads(Path("relative/verdicts.json").read_text(encoding="utf-8"))["specs"][0]["file"] == spec
+        )
+        written = contents(Path())
+        assert {"relative/index.html", "absolute/junit.xml", "absolute sweep/sweep.parquet"} < written.keys()
+        for name, content in written.items():
+            for word in (clone, str(toy.parent)):
+                assert word.encode() not in content, (name, word)
+        # the page has times of the clock in it
+        reports.append({name: content for name, content in written.items() if not name.endswith(".html")})
+    assert reports[0] == reports[1]
+    assert reports[0]["relative/verdicts.json"] == reports[0]["absolute/verdicts.json"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT between processes")

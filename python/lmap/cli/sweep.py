@@ -42,6 +42,7 @@ def sweep(
 
     Example: lmap sweep hunting --vary run.speed_kmh=80..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
     """
+    from lmap import files
     from lmap.check import report_folder, write_page
     from lmap.errors import LmapError
     from lmap.execute.progress import choose
@@ -62,10 +63,9 @@ def sweep(
         cache=not no_cache,
     )
     typer.echo(summary(frame, keys))
-    write_page(folder / "sweep.html", page(spec, frame, keys))
+    name = files.recorded(Path(spec)) if files.SPEC.is_path(spec) else spec
+    write_page(folder / "sweep.html", page(name, frame, keys))
     try:
-        from lmap import files
-
         files.put(folder / "sweep.parquet", frame.write_parquet)
     except OSError as error:
         raise LmapError(f"{folder / 'sweep.parquet'} cannot be written: {error.strerror or error}") from error
