@@ -168,7 +168,7 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
         facts=prepared.facts,
         cases=cases,
         inputs=prepared.inputs,
-        overrides=prepared.loaded.settings,
+        overrides=prepared.loaded.recorded_settings,
         drawing=None if look is None else look.drawing,
         drawings=judged.drawings,
     )

@@ -271,6 +271,8 @@ def test_reports_of_two_clones_hold_the_same_paths_and_none_of_the_machine(
         here.mkdir(exist_ok=True)
         monkeypatch.chdir(here)
         spec = Path(os.path.relpath(root / "specs" / "sway.toml", here.resolve())).as_posix()
+        vehicle = root / "models" / "vehicles" / "toy.toml"
+        assert lmap("check", spec, "--report", "set", "--quiet", "--set", f"vehicle={vehicle}").code == 0
         for given, out in ((spec, "relative"), (str(root / "specs" / "sway.toml"), "absolute")):
             assert lmap("check", given, "--report", out, "--quiet").code == 0
             assert lmap("sweep", given, "--vary", "run.speed_kmh=90,no", "-o", f"{out} sweep", "-q").code == 2

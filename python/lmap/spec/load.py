@@ -44,6 +44,16 @@ class LoadedSpec:
         """Named parameters of the vehicle that are set."""
         return overrides.split(self.settings)[1]
 
+    @property
+    def recorded_settings(self) -> dict[str, Any]:
+        """The settings as reports keep them: files by paths that hold nothing of this machine."""
+        return {
+            key: files.recorded(Path(value))
+            if isinstance(value, str) and Path(value).is_absolute()
+            else value
+            for key, value in self.settings.items()
+        }
+
     def locate(self, problem: Problem) -> Problem:
         """A problem whose key starts at the spec, with file and line, or with `--set` as its origin."""
         problem = _with_spec_keys(problem)
