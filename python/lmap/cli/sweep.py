@@ -40,7 +40,7 @@ def sweep(
     that cannot be judged is a row with the verdict "error". Exit code: 0 every variant passes, 1 some fail, 2 some
     cannot be judged or bad input, 130 stopped by Ctrl-C.
 
-    Example: lmap sweep hunting --vary run.speed_kmh=80..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
+    Example: lmap sweep hunting --vary run.speed_kmh=100..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
     """
     from lmap import files
     from lmap.check import report_folder, write_page
