@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import tempfile
+import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -84,6 +85,7 @@ def judge_all(
     for the next spec, of `about` that it will give, when a thread is free. Control laws that fail are an `InputProblem`
     in the end; with `tolerant` their cases could not be judged, and that is all.
     """
+    from lmap import judge
     from lmap.execute.local import Named, Queue, run_queue
 
     outcomes: dict[str, CaseOutcome] = {}
@@ -120,6 +122,8 @@ def judge_all(
                     settle(position)
 
     queue = Queue(missing(), ahead=ahead, about=about if ahead is not None else 0)
+    if queue.about:
+        threading.Thread(target=judge.load).start()  # while the first cases run
     run_queue(queue, jobs=jobs, progress=progress, store=store, known=len(outcomes), heard=ended)
     failed = [
         one.locate(case.label, problem)

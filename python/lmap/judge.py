@@ -55,6 +55,15 @@ def judge_spec(
     return _verdict(prepared, results, judged)
 
 
+def load() -> None:
+    """Imports what judging takes: a second's work, mostly scipy's, that need not wait for the first case to end."""
+    import scipy.signal  # noqa: F401
+
+    import lmap.criteria  # noqa: F401
+
+    _adapter()
+
+
 def _read(prepared: Prepared, results: Mapping[str, CaseOutcome]) -> _Judged:
     from lmap.procedures import Illustrated
 

@@ -302,6 +302,30 @@ def test_packed_curves_are_the_samples_in_single_precision() -> None:
     assert values(trace["y"])[0] == pytest.approx(126.0, rel=1e-6)
 
 
+def test_a_page_of_many_tests_has_a_third_of_the_points_and_says_so() -> None:
+    one = sample.passing()
+    few, many = (Page(render(replace(one, specs=one.specs * count)).decode()) for count in (1, 7))
+    assert "three times as many" in many.text
+    assert "three times as many" not in few.text
+
+    def points(page: Page) -> list[int]:
+        return [
+            len(values(trace["y"])) for trace in page.figures[0][0]["data"] if isinstance(trace["y"], dict)
+        ]
+
+    longest = max(points(few))
+    assert longest > 2000
+    assert longest / 4 < max(points(many)) < longest / 2
+
+
+def test_a_number_without_a_course_has_no_place_and_no_figure() -> None:
+    alone = sample.case("lint", duration=0.0)
+    assert alone.frame.height == 1
+    spec = sample.judged(alone, criteria=(sample.SHIFT,))
+    assert [(one.outcome, one.at) for one in spec.criteria] == [(Outcome.PASS, None)]
+    assert [figure for figure in figures(spec) if figure.criterion is not None] == []
+
+
 def folder_of(acceptance: Acceptance, folder: Path) -> dict[str, bytes]:
     write_report(acceptance, folder)
     return {

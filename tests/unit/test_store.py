@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 import lmap
-from lmap.execute.store import LostFrame, Store, clear, default_folder, limit_bytes, usage
+from lmap.check import open_store
+from lmap.execute.store import LostFrame, Store, StoredFrame, clear, default_folder, limit_bytes, usage
 from lmap.report.document import to_json
 from lmap.verdict import Acceptance
 
@@ -51,6 +52,30 @@ def test_a_second_check_runs_nothing_and_says_the_same(ran: list[str]) -> None:
     for one, other in zip(first.specs[0].cases, second.specs[0].cases, strict=True):
         assert other.frame.equals(one.frame)
         assert (other.extent, other.wall_s, other.ended) == (one.extent, one.wall_s, one.ended)
+
+
+def test_what_is_judged_as_it_ends_is_judged_alike_from_disk(ran: list[str]) -> None:
+    from_memory = lmap.check("sway")
+    for note in stored(".note"):
+        note.unlink()
+    ran.clear()
+    from_disk = lmap.check("sway")
+    assert ran == []
+    assert to_json(from_disk) == to_json(from_memory)
+
+
+def test_a_frame_that_is_held_is_not_read_back() -> None:
+    source = lmap.check("sway").specs[0].cases[0]
+    outcome = open_store(cache=True).outcome(source.hash)
+    assert outcome is not None
+    frame = outcome.source
+    assert isinstance(frame, StoredFrame)
+    known = frame.read()
+    frame.path.unlink()
+    with frame.store.holding(source.hash, known):
+        assert frame.read() is known
+    with pytest.raises(LostFrame):
+        frame.read()
 
 
 def test_only_what_changed_runs_again(ran: list[str]) -> None:

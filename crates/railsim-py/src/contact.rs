@@ -25,9 +25,11 @@ impl Tables {
     }
 }
 
-/// A case from its JSON, with the tables of others where there are any.
+/// A case from its JSON, with the tables of others where there are any. Other threads have the GIL meanwhile: a suite's cases are read
+/// while others are judged.
 pub fn read(py: Python<'_>, case_json: &str, tables: Option<&Tables>) -> PyResult<Case> {
-    let Some(shared) = tables else { return Case::from_json(case_json).map_err(|e| raise(py, e)) };
+    let parsed = || py.detach(|| Case::from_json(case_json)).map_err(|e| raise(py, e));
+    let Some(shared) = tables else { return parsed() };
     // Held for no longer than a comparison or a clone, and whole even where a holder has panicked.
     let last = || shared.last.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((text, case)) = &*last()
@@ -35,7 +37,7 @@ pub fn read(py: Python<'_>, case_json: &str, tables: Option<&Tables>) -> PyResul
     {
         return Ok(case.clone());
     }
-    let mut case = Case::from_json(case_json).map_err(|e| raise(py, e))?;
+    let mut case = parsed()?;
     case.tables = shared.tables.clone();
     *last() = Some((case_json.to_owned(), case.clone()));
     Ok(case)

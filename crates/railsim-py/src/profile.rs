@@ -14,7 +14,7 @@ use crate::errors::raise;
 #[pyfunction]
 #[pyo3(signature = (text, name, options_json="{}"))]
 pub fn read_profile(py: Python<'_>, text: &str, name: &str, options_json: &str) -> PyResult<String> {
-    let profile = from_text(text, name, options_json).map_err(|e| raise(py, e))?;
+    let profile = py.detach(|| from_text(text, name, options_json)).map_err(|e| raise(py, e))?;
     Ok(json!({"points": in_millimetres(&profile.points)}).to_string())
 }
 

@@ -21,7 +21,7 @@ pub fn vehicle_resolve(
         let (document, overrides) = (parse("vehicle", document_json)?, parse("set", overrides_json)?);
         resolve_summary(&document, &overrides, condition).map(|summary| summary.to_string())
     };
-    resolve().map_err(|e| raise(py, e))
+    py.detach(resolve).map_err(|e| raise(py, e))
 }
 
 /// JSON schema of a vehicle file.

@@ -418,6 +418,8 @@ def judge(
     name, reading = min(readings, key=lambda entry: _goodness(criterion, entry[1].value))
     outcome = Outcome.PASS if criterion.passes(reading.value) else Outcome.FAIL
     verdict = _verdict(criterion, index, label, case_hash, tuple(names), outcome, name, reading)
+    if frame.height == 1:
+        return replace(verdict, at=None)  # a number without a course is nowhere
     rows = signals.counted(frame.columns)
     # rows of an analysis are no moments: the number of the row says where
     return verdict if rows is None else replace(verdict, at={rows: reading.t})

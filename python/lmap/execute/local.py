@@ -205,8 +205,13 @@ def run_queue(
         wall_s = time.perf_counter() - begun.pop(index, start)
         case = queue.handed[index]
         outcome = _outcome(result, wall_s, railsim, case.control)
-        if store is not None and case.control is None:
-            outcome = store.keep(case.hash, outcome)
+        if store is None or case.control is not None:
+            tell(index, case, outcome)
+        else:
+            with store.holding(case.hash, outcome.frame):
+                tell(index, case, store.keep(case.hash, outcome))
+
+    def tell(index: int, case: Case, outcome: CaseOutcome) -> None:
         hears.done(index, outcome.wall_s, outcome.progress)
         heard(case.hash, outcome)
 

@@ -77,6 +77,9 @@ class StoredFrame:
         """The frame; `LostFrame` where the file is not what was written."""
         import polars as pl
 
+        held = self.store.held.get(self.case_hash)
+        if held is not None:
+            return held
         try:
             with self.path.open("rb") as stream:
                 whole = hashlib.file_digest(stream, "sha256").hexdigest() == self.sha256
@@ -93,6 +96,8 @@ class Store:
     def __init__(self, folder: Path, core: str) -> None:
         self.root = folder.absolute()  # the working folder may be another one while an FMU is loaded
         self.folder = self.root / hashlib.sha256(core.encode()).hexdigest()[:16]
+        self.held: dict[str, pl.DataFrame] = {}
+        """Frames that somebody holds just now, by hash: the disk is not asked for these."""
 
     @classmethod
     def temporary(cls, core: str) -> Store:
@@ -160,6 +165,16 @@ class Store:
             return outcome
         stored = StoredFrame(path, sums[0], case_hash, self)
         return CaseOutcome(stored, outcome.ended, outcome.statistics, outcome.wall_s, extent)
+
+    @contextlib.contextmanager
+    def holding(self, case_hash: str, frame: pl.DataFrame | None) -> Iterator[None]:
+        """Within, a frame that was kept is the one in memory: who judges it at once does not read it back."""
+        if frame is not None:
+            self.held[case_hash] = frame
+        try:
+            yield
+        finally:
+            self.held.pop(case_hash, None)
 
     def drop(self, case_hash: str) -> None:
         """Forgets a case."""

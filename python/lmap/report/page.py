@@ -29,6 +29,9 @@ from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
 _PLOTLY = "<script>/* plotly.js */</script>"
 """Where the template wants the library; no text from a file can look so, its `<` being escaped."""
 
+_FEW = 6
+"""Tests on a page whose curves are drawn in full detail."""
+
 _LONG_LIST = 8
 """Lists of lists longer than this are folded on the page: profile points."""
 
@@ -125,6 +128,7 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
     if len(acceptance.specs) > 3:
         title += f" and {len(acceptance.specs) - 3} more"
     drawings = {id(spec): name for spec, name in _drawings(acceptance)}
+    count = len(acceptance.specs)
     return {
         "title": title,
         "verdict": words.VERDICTS[acceptance.outcome],
@@ -132,10 +136,11 @@ def _page(acceptance: Acceptance) -> dict[str, Any]:
         "headline": words.headline(words.all_criteria(acceptance)),
         "version": acceptance.version,
         "core": acceptance.core,
+        "coarse": count > _FEW,
         "index": [_entry(position, spec) for position, spec in enumerate(acceptance.specs)],
         # one at a time: its frames and plots are let go before the next
         "specs": (
-            _spec(position, spec.held(), alone=len(acceptance.specs) == 1, drawing=drawings.get(id(spec)))
+            _spec(position, spec.held(), of=count, drawing=drawings.get(id(spec)))
             for position, spec in enumerate(acceptance.specs)
         ),
     }
@@ -153,7 +158,9 @@ def _entry(position: int, spec: SpecVerdict) -> dict[str, str]:
     }
 
 
-def _spec(position: int, spec: SpecVerdict, *, alone: bool, drawing: str | None = None) -> dict[str, Any]:
+def _spec(position: int, spec: SpecVerdict, *, of: int, drawing: str | None = None) -> dict[str, Any]:
+    from lmap.report.figures.plot import COARSE
+
     return {
         **_entry(position, spec),
         "file": spec.file,
@@ -161,11 +168,11 @@ def _spec(position: int, spec: SpecVerdict, *, alone: bool, drawing: str | None 
         "vehicle": spec.vehicle,
         "condition": spec.condition,
         # With one spec the page's head has said it.
-        "headline": "" if alone else f"{_sentence(words.headline(spec.criteria))}.",
+        "headline": "" if of == 1 else f"{_sentence(words.headline(spec.criteria))}.",
         "criteria": _rows(spec),
         "messages": words.messages(spec),
         "assumptions": words.assumptions(spec),
-        "figures": _figures(position, spec),
+        "figures": _figures(position, spec, COARSE if of > _FEW else 1.0),
         "drawing": drawing,
         "facts": spec.facts,
         "overrides": [(key, value) for key, value in spec.overrides.items()],
@@ -204,8 +211,9 @@ def _row(criterion: CriterionVerdict, *, first: bool) -> _Row:
     )
 
 
-def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
+def _figures(position: int, spec: SpecVerdict, detail: float) -> list[dict[str, Any]]:
     from lmap.report.figures import FIGURES
+    from lmap.report.figures.criterion import NEAR
     from lmap.report.figures.plot import plotly
 
     shown: list[dict[str, Any]] = []
@@ -216,7 +224,7 @@ def _figures(position: int, spec: SpecVerdict) -> list[dict[str, Any]]:
                 "stretch": view.stretch,
                 "caption": view.caption,
                 "message": view.message,
-                **plotly(view),
+                **plotly(view, 1.0 if view.stretch == NEAR else detail),
             }
             for view in figure.views
         ]

@@ -71,7 +71,8 @@ def _summary(acceptance: Acceptance) -> Table:
 
 def _spec(spec: SpecVerdict, console: Console, *, reasons: bool = True) -> None:
     title = Text(f"{spec.id} {spec.title}", style="bold")
-    title.append(f"   {spec.vehicle}, {spec.condition}   {spec.file}", style="not bold")
+    model = ", ".join(part for part in (spec.vehicle, spec.condition) if part)
+    title.append(f"   {model}   {spec.file}", style="not bold")
     console.print(title, highlight=False)
     for key, value in spec.overrides.items():
         _note("set", f"{key} = {value}", console)

@@ -88,6 +88,8 @@ def _views(verdict: CriterionVerdict, case: CaseResult | None) -> list[View]:
         ]
     if not verdict.signals:
         return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "no signal is read")]
+    if samples(case).height == 1:
+        return []  # a number is no curve
     try:
         return _judged(verdict, case)
     except JudgementProblem as problem:

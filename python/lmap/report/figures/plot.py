@@ -27,6 +27,9 @@ BUCKETS = 1200
 FAINT_BUCKETS = 500
 """The same for the curves that stand behind."""
 
+COARSE = 1.0 / 3.0
+"""Share of these on a page of many tests: 55 MB, not 110, and still two points for each three columns of a screen."""
+
 _SHOWN_IN = {"m": "mm", "N": "kN", "m/s": "km/h", "rad": "mrad"}
 
 
@@ -125,12 +128,12 @@ def wheelsets(case: CaseResult) -> list[str]:
     return list(names)
 
 
-def plotly(view: View) -> dict[str, Any]:
-    """`data` and `layout` for plotly.js, with roles in place of colours."""
+def plotly(view: View, detail: float = 1.0) -> dict[str, Any]:
+    """`data` and `layout` for plotly.js, with roles for colours; a curve gets the share `detail` of its points."""
     if view.raw is not None:
         return dict(view.raw)
     axes = _axes(len(view.rows))
-    data = [_trace(curve, view.along) for curve in view.curves]
+    data = [_trace(curve, view.along, detail) for curve in view.curves]
     span = _span(view.curves)
     for value, label in view.limits:
         data.append(_limit(span, value, label))
@@ -166,8 +169,8 @@ def plotly(view: View) -> dict[str, Any]:
     return {"data": data, "layout": layout}
 
 
-def _trace(curve: Curve, along: str) -> dict[str, Any]:
-    t, values = envelope(curve.t, curve.values, curve.buckets)
+def _trace(curve: Curve, along: str, detail: float) -> dict[str, Any]:
+    t, values = envelope(curve.t, curve.values, round(detail * curve.buckets))
     name, unit = escape(curve.name), escape(curve.unit)
     where = "%{x:.3f} s" if along == TIME_AXIS else f"{along} %{{x:.4g}}"
     trace: dict[str, Any] = {
