@@ -42,6 +42,7 @@ class Curve(_Table):
     unbalanced: float | None = Field(default=None, allow_inf_nan=False)
     """m/s2 in the plane of the rails, + outward: V2/R cos c - g sin c. This or `speed_kmh`."""
     speed_kmh: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
+    """This or `unbalanced`."""
     label: str | None = Field(default=None, min_length=1)
     """Of its case; radius, cant and speed if absent."""
 
@@ -67,6 +68,7 @@ class Settings(wheel_forces.Settings):
     """`[test]`."""
 
     curves: list[Curve] = Field(min_length=1)
+    """One case each."""
     straight_m: float = Field(gt=0.0, allow_inf_nan=False)
     """Straight track before the curve."""
     transition_m: float = Field(gt=0.0, allow_inf_nan=False)

@@ -45,6 +45,7 @@ class Slow(_Table):
     """What runs below a speed are stepped with: the damping of creep is inversely proportional to the speed."""
 
     below_kmh: float = Field(gt=0.0, allow_inf_nan=False)
+    """It holds below this speed."""
     integrator: dict[str, Any]
     """In place of `run.integrator`; checked by the core."""
 
