@@ -69,10 +69,11 @@ class Weighting:
         return sections
 
 
-# ISO 8041:2005 as printed in the reference manual of the HVM200 (Larson Davis), Table 3.1; Wb is of ISO 2631-4 and
-# BS 6841, which EN 12299 takes for the vertical.
+# ISO 8041:2005 as printed in the reference manual of the HVM200 (Larson Davis), Table 3.1; Wb there is of ISO 2631-4.
+# EN 12299 has its vertical curve from BS 6841, with quality factors of its own and a gain of 0.4 before the step.
 WEIGHTINGS = {
     "Wb": Weighting(16.0, 16.0, 0.55, 2.5, 0.9, 4.0, 0.95, gain=1.024),
+    "Wb_EN12299": Weighting(16.0, 16.0, 0.63, 2.5, 0.8, 4.0, 0.8, gain=0.4 * (4.0 / 2.5) ** 2),
     "Wc": Weighting(8.0, 8.0, 0.63),
     "Wd": Weighting(2.0, 2.0, 0.63),
     "We": Weighting(1.0, 1.0, 0.63),
@@ -82,7 +83,7 @@ WEIGHTINGS = {
 }
 """By name: Wk seat z, Wd seat x and y, Wc seat back x, We rotation, Wj recumbent head, Wf motion sickness."""
 
-Curve = Literal["Wb", "Wc", "Wd", "We", "Wf", "Wj", "Wk"]
+Curve = Literal["Wb", "Wb_EN12299", "Wc", "Wd", "We", "Wf", "Wj", "Wk"]
 
 
 def analogue(values: Array, sections: Polynomials, rate: float) -> Array:
@@ -235,8 +236,8 @@ class MeanComfort(Joint):
     """Mean comfort N_MV of EN 12299 (standard method): accelerations x, y and z of the floor, in this order.
 
     N_MV = 6 sqrt(ax^2 + ay^2 + az^2), each the 95th percentile of the r.m.s. over blocks of 5 s behind Wd, Wd and
-    Wb. The standard takes 5 minutes, 60 blocks; fewer than `blocks` are refused. Below 1.5 very comfortable, 2.5
-    comfortable, 3.5 medium, 4.5 uncomfortable, else very uncomfortable (EN 12299:2009, 6.7.2 and its Annex).
+    its own Wb. The standard takes 5 minutes, 60 blocks; fewer than `blocks` are refused. Below 1.5 very comfortable,
+    2.5 comfortable, 3.5 medium, 4.5 uncomfortable, else very uncomfortable (EN 12299:2009, 6.7.2 and its Annex).
     """
 
     name: ClassVar[str] = "mean_comfort"
@@ -254,7 +255,7 @@ class MeanComfort(Joint):
         """The index, placed in the middle of the record."""
         total = 0.0
         places: list[tuple[Array, Array]] = []
-        for signal, curve in zip(signals, ("Wd", "Wd", "Wb"), strict=True):
+        for signal, curve in zip(signals, ("Wd", "Wd", "Wb_EN12299"), strict=True):
             weighted = _weighted(signal, curve, self.min_rate_hz, self.name, self.settle_s)
             x, t, s = _blocks(weighted, self.block_s, _rate(weighted, self.min_rate_hz, self.name))
             if len(x) < self.blocks:
