@@ -11,13 +11,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from lmap.criteria.units import STANDARD_GRAVITY
 from lmap.errors import InputProblem, Problem
 from lmap.formulas import CANT_BASE
 from lmap.procedures import wheel_forces
-from lmap.procedures.base import CaseFigures, expand, settings
+from lmap.procedures.base import CaseFigures, Table, expand, settings
 from lmap.procedures.speed_range import Slow, stepped
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import RunPart, Spec
@@ -28,11 +28,7 @@ SUMMARY = "one run through each curve of a list, at its speed or its unbalanced 
 UNITS: Mapping[str, str] = {}
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-class Curve(_Table):
+class Curve(Table):
     """One curve and how fast it is run."""
 
     radius_m: float = Field(allow_inf_nan=False)
