@@ -310,12 +310,12 @@ def _profiles(
     found: dict[str, tuple[Path, str]] = {}
     data: dict[str, Any] = {}
     problems: list[Problem] = []
-    places = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
     for case in cases:
         for name, key in case.profile_names.items():
             if name in data:
                 continue
             from_caller = ".".join(map(str, key)) in loaded.given and files.PROFILE.is_path(name)
+            places = _places(key, loaded, vehicle, base)
             try:
                 path = first_place(name, [Path.cwd(), *places] if from_caller else places)
                 text = files.read_text(path, "profile")
@@ -332,6 +332,17 @@ def _profiles(
     if problems:
         raise InputProblem(problems)
     return found, data
+
+
+def _places(
+    key: KeyPath, loaded: LoadedSpec, vehicle: Vehicle, base: toml.Document | None
+) -> Sequence[Path]:
+    """Where a profile is looked for: from the file that names it, then from the others."""
+    written_in = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
+    if _is_written(loaded, key):
+        return written_in
+    named_by = base if key[0] == "track" and base is not None else vehicle.document
+    return list(dict.fromkeys([named_by.path, *written_in]))
 
 
 def _checked(
@@ -415,9 +426,9 @@ def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
         documents.insert(1, ("spec", sources.loaded.document))
     if sources.base is not None:
         documents.append(("track", sources.base))
-    inputs = [InputFile(role=role, path=doc.shown, sha256=doc.sha256) for role, doc in documents]
+    inputs = [InputFile(role=role, path=doc.recorded, sha256=doc.sha256) for role, doc in documents]
     for path, text in sources.profiles.values():
-        inputs.append(InputFile(role="profile", path=files.shown(path), sha256=files.sha256(text)))
+        inputs.append(InputFile(role="profile", path=files.recorded(path), sha256=files.sha256(text)))
     return tuple(inputs)
 
 
@@ -428,7 +439,7 @@ def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
         for path in record_paths(case, beside).values():
             found.setdefault(path, hashlib.sha256(path.read_bytes()).hexdigest())
     return [
-        InputFile(role="measured track", path=files.shown(path), sha256=sha) for path, sha in found.items()
+        InputFile(role="measured track", path=files.recorded(path), sha256=sha) for path, sha in found.items()
     ]
 
 
@@ -472,14 +483,14 @@ def _law_inputs(cases: Iterable[tuple[Case, Path]]) -> list[InputFile]:
         path = controller.law_file(case, beside)
         if path is not None:
             sha256 = case.data["run"]["controller"]["sha256"]
-            found[path] = InputFile(role="control law", path=files.shown(path), sha256=sha256)
+            found[path] = InputFile(role="control law", path=files.recorded(path), sha256=sha256)
     return list(found.values())
 
 
 def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
     if outline is None:
         return ()
-    return (InputFile(role="outline", path=outline.shown, sha256=outline.sha256),)
+    return (InputFile(role="outline", path=outline.recorded, sha256=outline.sha256),)
 
 
 def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:

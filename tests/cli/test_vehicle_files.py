@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import Ran, spoil
 
-from lmap import vehicle
-from lmap.cli import app
+from lmap import files, vehicle
 from lmap.errors import InputProblem
 
 pytestmark = pytest.mark.needs_core
@@ -21,8 +20,6 @@ BOBO = "models/vehicles/bobo86.toml"
 WAGON = "models/vehicles/wagon2.toml"
 COACH = "models/vehicles/manchester1.toml"
 RIG = "models/vehicles/suspended_wheelset.toml"
-
-Run = Callable[..., tuple[int, str, list[str]]]
 
 
 @pytest.fixture
@@ -33,26 +30,18 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+Run = Callable[..., tuple[int, str, list[str]]]
+
+
 @pytest.fixture
-def lmap(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
+def lmap(lmap: Callable[..., Ran]) -> Run:
     """Runs a command: exit code, stdout, lines of stderr."""
 
     def run(*arguments: str) -> tuple[int, str, list[str]]:
-        monkeypatch.setattr(sys, "argv", ["lmap", *arguments])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        code = left.value.code
-        return code if isinstance(code, int) else 0, out, err.splitlines()
+        code, out, err = lmap(*arguments)
+        return code, out, err.splitlines()
 
     return run
-
-
-def spoil(path: str, old: str, new: str) -> None:
-    file = Path(path)
-    text = file.read_text(encoding="utf-8")
-    assert old in text, f"{old} is not in {path}"
-    file.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
 SHEAR = 'kind = "shear_spring"'
@@ -262,16 +251,12 @@ def test_a_bad_include(written: str, found: str, place: Path, lmap: Run) -> None
     assert found in message
 
 
-def test_the_schema_is_one_and_the_reference_page_is_its(lmap: Run) -> None:
+def test_the_schema_is_one_and_says_what_every_key_means(lmap: Run) -> None:
     code, out, _ = lmap("schema", "vehicle")
     assert code == 0
     schema = json.loads(out)
     assert schema["type"] == "object"
     assert "include" in schema["properties"]
-    code, out, _ = lmap("schema", "vehicle", "--markdown")
-    page = (ROOT / "docs/reference/vehicle.md").read_text(encoding="utf-8")
-    assert out == page, "lmap schema vehicle --markdown > docs/reference/vehicle.md"
-    # every key says what it means
     for name, part in {"": schema, **schema["$defs"]}.items():
         for key, own in part.get("properties", {}).items():
             assert own.get("description") or "const" in own, f"{name}.{key}"
@@ -325,3 +310,27 @@ def test_faults_of_data_are_told_by_key(spoiled: dict[str, Any], message: str) -
         vehicle.Vehicle.of(data | spoiled, beside=ROOT)
     assert message in str(refused.value)
     assert ".toml" not in str(refused.value)
+
+
+def test_a_profile_is_the_one_beside_the_vehicle_that_names_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not the one of that name which ships with the spec."""
+    from lmap.check import find_specs
+    from lmap.prepare import prepare
+
+    shutil.copytree(ROOT / "models", tmp_path / "models")
+    mine = tmp_path / "models/profiles/anzr1.csv"
+    shutil.copy(mine.with_name("anzr1_worn_1.csv"), mine)
+    monkeypatch.chdir(ROOT)
+    [spec] = find_specs("axle_loads")
+    found = {
+        one.role: one.sha256
+        for one in prepare(spec, {"vehicle": str(tmp_path / "models/vehicles/coco134.toml")}).inputs
+        if Path(one.path).name == "anzr1.csv"
+    }
+    ours, theirs = (
+        files.sha256(files.read_text(path, "profile")) for path in (mine, ROOT / "models/profiles/anzr1.csv")
+    )
+    assert ours != theirs
+    assert found == {"profile": ours}

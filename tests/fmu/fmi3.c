@@ -1,17 +1,21 @@
 /* The slip law as an FMU of FMI 3.0 for co-simulation. Prototypes as the standard has them (FMI 3.0.1, chapters 2.2 and 4.2). */
 #include <stdbool.h>
-
-#include "slip_law.h"
+#include <stddef.h>
 
 typedef void (*LogMessage)(void *, int, const char *, const char *);
 
 typedef struct {
-    Law law;
-    int parts; /* of a step that has returned early, those that are done */
-    double begun, whole;
     void *environment;
     LogMessage log;
-} Instance;
+} Caller;
+
+static void tell(Caller caller, int status, const char *message) {
+    if (caller.log != NULL) {
+        caller.log(caller.environment, status, "error", message);
+    }
+}
+
+#include "instance.h"
 
 EXPORT const char *fmi3GetVersion(void) {
     return "3.0";
@@ -22,16 +26,7 @@ EXPORT void *fmi3InstantiateCoSimulation(const char *name, const char *token, co
                                          void *environment, LogMessage log, void *intermediate) {
     (void)name, (void)resources, (void)visible, (void)logging, (void)events, (void)early;
     (void)required, (void)count, (void)intermediate;
-    if (strcmp(token, "{slip-law-3}") != 0) {
-        return NULL;
-    }
-    Instance *instance = calloc(1, sizeof *instance);
-    if (instance != NULL) {
-        law_reset(&instance->law);
-        instance->environment = environment;
-        instance->log = log;
-    }
-    return instance;
+    return instance_new(token, "{slip-law-3}", (Caller){environment, log});
 }
 
 EXPORT void fmi3FreeInstance(void *instance) {
@@ -52,35 +47,31 @@ EXPORT int fmi3DoStep(Instance *instance, double t, double step, bool final, boo
     (void)final;
     *event = *terminate = *early = false;
     *last = t + step;
-    const double *value = instance->law.value;
+    Law *law = &instance->law;
+    const double *value = law->value;
     if (t >= value[STUCK_AT]) {
         *early = true;
         *last = t;
         return OK;
     }
     /* With early_parts = n a step takes n calls; the law answers in the last of them, to what the first was asked. */
-    if (instance->parts == 0) {
-        instance->begun = t;
-        instance->whole = step;
+    if (law->parts == 0) {
+        law->begun = t;
+        law->whole = step;
     }
-    const int left = (int)value[EARLY_PARTS] - instance->parts;
+    const int left = (int)value[EARLY_PARTS] - law->parts;
     if (left > 1) {
-        instance->parts++;
+        law->parts++;
         *early = true;
         *last = t + step / left;
         return OK;
     }
-    instance->parts = 0;
-    const int status = law_step(&instance->law, instance->begun, instance->whole);
-    if (status != OK && instance->log != NULL) {
-        instance->log(instance->environment, status, "error", "the inverter tripped");
-    }
-    return status;
+    law->parts = 0;
+    return instance_step(instance, law->begun, law->whole);
 }
 
 EXPORT int fmi3Reset(Instance *instance) {
-    law_reset(&instance->law);
-    return OK;
+    return instance_reset(instance);
 }
 
 NOTHING(fmi3SetDebugLogging)

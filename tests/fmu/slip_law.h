@@ -1,4 +1,4 @@
-/* Slip control of a locomotive with two bogies of three axles, as an FMU holds it: what fmi2.c and fmi3.c share.
+/* Slip control of a locomotive with two bogies of three axles, as an FMU holds it; instance.h makes a model of it.
  *
  * One torque for each bogie: a PI law holds the slip of its fastest axle at the reference, between nothing and the torque
  * limit; the integral is kept where the torque just stays in between. The law is that of the vehicle's own controller.
@@ -25,6 +25,8 @@ enum { SLIP = 0, TORQUE = 6, KP = 8, KI, SLIP_REFERENCE, TORQUE_LIMIT, FAIL_AT, 
 typedef struct {
     double value[VALUES];
     double integral[2];
+    int parts; /* of a step that has returned early (FMI 3), those that are done */
+    double begun, whole;
 } Law;
 
 static void law_reset(Law *law) {

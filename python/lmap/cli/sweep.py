@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from lmap.cli.options import Jobs, Quiet
+
 
 def sweep(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="A file, or a test that ships: name or id.")],
@@ -26,13 +28,11 @@ def sweep(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a key for all variants.")
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Threads; default: all processors.")
-    ] = None,
+    jobs: Jobs = None,
     no_cache: Annotated[
         bool, typer.Option("--no-cache", help="Run everything, keep nothing for the next sweep.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Judge a spec for every combination of values: sweep.parquet, one row for each variant, criterion and case.
 
@@ -40,8 +40,9 @@ def sweep(
     that cannot be judged is a row with the verdict "error". Exit code: 0 every variant passes, 1 some fail, 2 some
     cannot be judged or bad input, 130 stopped by Ctrl-C.
 
-    Example: lmap sweep hunting --vary run.speed_kmh=80..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
+    Example: lmap sweep hunting --vary run.speed_kmh=100..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
     """
+    from lmap import files
     from lmap.check import report_folder, write_page
     from lmap.errors import LmapError
     from lmap.execute.progress import choose
@@ -62,10 +63,9 @@ def sweep(
         cache=not no_cache,
     )
     typer.echo(summary(frame, keys))
-    write_page(folder / "sweep.html", page(spec, frame, keys))
+    name = files.recorded(Path(spec)) if files.SPEC.is_path(spec) else spec
+    write_page(folder / "sweep.html", page(name, frame, keys))
     try:
-        from lmap import files
-
         files.put(folder / "sweep.parquet", frame.write_parquet)
     except OSError as error:
         raise LmapError(f"{folder / 'sweep.parquet'} cannot be written: {error.strerror or error}") from error
