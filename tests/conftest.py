@@ -15,7 +15,7 @@ import lmap
 
 TESTS = Path(__file__).parent
 ROOT = TESTS.parent
-for helpers in ("properties", "unit"):
+for helpers in ("cli", "properties", "unit"):
     sys.path.insert(0, str(TESTS / helpers))
 
 

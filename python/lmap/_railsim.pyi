@@ -19,6 +19,8 @@ __all__ = [
     "RailsimError",
     "Tables",
     "_run_probes",
+    "case_schema",
+    "channel_parts",
     "channels",
     "check_case",
     "contact_gap",
@@ -160,6 +162,9 @@ def vehicle_resolve(document_json: str, overrides_json: str, condition: str | No
 def vehicle_schema() -> str:
     """JSON schema of a vehicle file as JSON text."""
 
+def case_schema() -> str:
+    """JSON schemas of a case's tables `track` and `run`, by name, as JSON text."""
+
 def lint_vehicle(document_json: str, overrides_json: str, condition: str | None = None) -> str:
     """What keeps a vehicle document, its parameters overridden, from being a vehicle: a JSON list of findings.
 
@@ -221,6 +226,9 @@ class Tables:
     """
 
     def __new__(cls) -> Tables: ...
+
+def channel_parts() -> list[tuple[str, str, str]]:
+    """Last part of the name, unit and meaning of every channel that any case may have, sorted."""
 
 def channels(case_json: str, tables: Tables | None = None) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of every channel that a case records, in the order of its columns."""

@@ -89,11 +89,30 @@ def names(kind: Kind, beside: Path) -> list[str]:
 
 
 def shown(path: Path) -> str:
-    """A path as messages show it: from the working folder where it lies below, with forward slashes."""
-    try:
-        return path.resolve().relative_to(Path.cwd()).as_posix()
-    except ValueError:
+    """A path as messages show it, with forward slashes: seen from the working folder, `../specs/x.toml`.
+
+    What ships is `<lmap>/specs/x.toml` where the working folder lies elsewhere; what has nothing but the root in common
+    with it is shown as it is.
+    """
+    here, there = Path.cwd(), path.resolve()
+    below = there.is_relative_to(here)
+    for root in shipped_roots():
+        # an environment below the working folder is no place that anybody knows
+        if (
+            there.is_relative_to(root)
+            and not here.is_relative_to(root)
+            and (_PACKAGE in root.parents or not below)
+        ):
+            return f"<lmap>/{there.relative_to(root).as_posix()}"
+    if not below and there.parts[:2] != here.parts[:2]:
         return path.as_posix()
+    return Path(os.path.relpath(there, here)).as_posix()
+
+
+def recorded(path: Path) -> str:
+    """A path as reports keep it: as messages show it, but with nothing of this machine: at worst the file's name."""
+    text = shown(path)
+    return path.name if Path(text).is_absolute() else text
 
 
 def read_text(path: Path, noun: str) -> str:

@@ -167,7 +167,7 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
     return SpecVerdict(
         id=spec.id,
         title=spec.title,
-        file=prepared.loaded.asked.shown,
+        file=prepared.loaded.asked.recorded,
         procedure=spec.procedure,
         vehicle=prepared.vehicle.data.name,
         condition=spec.condition or "",
@@ -177,7 +177,7 @@ def _verdict(prepared: Prepared, results: Mapping[str, CaseOutcome], judged: _Ju
         facts=prepared.facts,
         cases=cases,
         inputs=prepared.inputs,
-        overrides=prepared.loaded.settings,
+        overrides=prepared.loaded.recorded_settings,
         drawing=None if look is None else look.drawing,
         drawings=judged.drawings,
     )

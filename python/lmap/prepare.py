@@ -415,9 +415,9 @@ def _inputs(sources: _Sources) -> tuple[InputFile, ...]:
         documents.insert(1, ("spec", sources.loaded.document))
     if sources.base is not None:
         documents.append(("track", sources.base))
-    inputs = [InputFile(role=role, path=doc.shown, sha256=doc.sha256) for role, doc in documents]
+    inputs = [InputFile(role=role, path=doc.recorded, sha256=doc.sha256) for role, doc in documents]
     for path, text in sources.profiles.values():
-        inputs.append(InputFile(role="profile", path=files.shown(path), sha256=files.sha256(text)))
+        inputs.append(InputFile(role="profile", path=files.recorded(path), sha256=files.sha256(text)))
     return tuple(inputs)
 
 
@@ -428,7 +428,7 @@ def _records(cases: Sequence[Case], beside: Path) -> list[InputFile]:
         for path in record_paths(case, beside).values():
             found.setdefault(path, hashlib.sha256(path.read_bytes()).hexdigest())
     return [
-        InputFile(role="measured track", path=files.shown(path), sha256=sha) for path, sha in found.items()
+        InputFile(role="measured track", path=files.recorded(path), sha256=sha) for path, sha in found.items()
     ]
 
 
@@ -472,14 +472,14 @@ def _law_inputs(cases: Iterable[tuple[Case, Path]]) -> list[InputFile]:
         path = controller.law_file(case, beside)
         if path is not None:
             sha256 = case.data["run"]["controller"]["sha256"]
-            found[path] = InputFile(role="control law", path=files.shown(path), sha256=sha256)
+            found[path] = InputFile(role="control law", path=files.recorded(path), sha256=sha256)
     return list(found.values())
 
 
 def _outline_input(outline: toml.Document | None) -> tuple[InputFile, ...]:
     if outline is None:
         return ()
-    return (InputFile(role="outline", path=outline.shown, sha256=outline.sha256),)
+    return (InputFile(role="outline", path=outline.recorded, sha256=outline.sha256),)
 
 
 def _is_written(loaded: LoadedSpec, key: KeyPath) -> bool:

@@ -54,9 +54,12 @@ def variation(text: str, samples: int = SAMPLES) -> Variation:
         raise InputProblem(
             Problem(key=(f"--vary {key}",), found=f'"{written}"', allowed="two finite numbers: A..B")
         )
-    listed = overrides.value(f"[{written}]")
+    origin = f"--vary {key}"
+    listed = overrides.value(f"[{written}]", origin)
     values = (
-        listed if isinstance(listed, list) else [overrides.value(one.strip()) for one in written.split(",")]
+        listed
+        if isinstance(listed, list)
+        else [overrides.value(one.strip(), origin) for one in written.split(",")]
     )
     if "" in values:
         raise InputProblem(

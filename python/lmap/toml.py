@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -54,6 +54,11 @@ class Document:
         return files.shown(self.path)
 
     @property
+    def recorded(self) -> str:
+        """The path as reports keep it."""
+        return files.recorded(self.path)
+
+    @property
     def sha256(self) -> str:
         """Hash of the text."""
         return files.sha256(self.text)
@@ -76,7 +81,10 @@ class Document:
 
 
 def loads(text: str) -> dict[str, Any]:
-    """The data of a TOML text; an `InputProblem` with the line where it is none."""
+    """The data of a TOML text; an `InputProblem` with the line where it is none.
+
+    With key and line of what TOML has and a case has not: numbers that are not finite, dates.
+    """
     railsim = core()
     try:
         data: dict[str, Any] = json.loads(railsim.toml_to_json(text))
@@ -89,28 +97,9 @@ def load(path: Path, noun: str) -> Document:
     """A TOML file; an `InputProblem` with file and line where it cannot be read."""
     text = files.read_text(path, noun)
     try:
-        document = Document(path, text, loads(text))
+        return Document(path, text, loads(text))
     except InputProblem as error:
         raise InputProblem([problem.at(file=files.shown(path)) for problem in error.problems]) from None
-    bad = [
-        document.locate(Problem(found=found, allowed="a finite number", key=key))
-        for key, found in not_finite(document.data)
-    ]
-    if bad:
-        raise InputProblem(bad)
-    return document
-
-
-def not_finite(data: Any, key: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
-    """Key and value of every number in plain data that is NaN or infinite: TOML has them, a case does not."""
-    if isinstance(data, float) and not math.isfinite(data):
-        yield key, str(data)
-    elif isinstance(data, Mapping):
-        for name, value in data.items():
-            yield from not_finite(value, (*key, name))
-    elif isinstance(data, list | tuple):
-        for index, value in enumerate(data):
-            yield from not_finite(value, (*key, index))
 
 
 def json_loads(text: str, noun: str) -> Any:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from commands import spoil
 
-from lmap.cli import app
 from lmap.errors import listed
 from lmap.procedures import BY_NAME
 
@@ -29,31 +28,9 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def messages(
-    place: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> Callable[..., list[str]]:
-    """What a check of a spec says on stderr; asserts that it left with 2 and wrote nothing."""
-
-    def run(*arguments: str) -> list[str]:
-        before = sorted(place.rglob("*"))
-        monkeypatch.setattr(sys, "argv", ["lmap", "check", *arguments, "--report", "out"])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        assert (left.value.code, out) == (2, "")
-        assert sorted(place.rglob("*")) == before
-        return err.splitlines()
-
-    return run
-
-
-def spoil(path: str, old: str, new: str) -> int:
-    """Replaces the first occurrence in a file; the line where it is."""
-    file = Path(path)
-    text = file.read_text(encoding="utf-8")
-    assert old in text, f"{old} is not in {path}"
-    file.write_text(text.replace(old, new, 1), encoding="utf-8")
-    return text[: text.index(old)].count("\n") + 1
+def messages(place: Path, refused: Callable[..., list[str]]) -> Callable[..., list[str]]:
+    """What a bad check says."""
+    return lambda *arguments: refused("check", *arguments, "--report", "out")
 
 
 def line_of(path: str, text: str) -> int:
@@ -77,9 +54,36 @@ def test_an_unknown_key_of_the_core_with_the_nearest_known_one(messages: Callabl
     line = spoil(SPEC, "output_step", "outputstep")
     found = messages(SPEC)
     assert any(
-        message.startswith(f"lmap: {SPEC}:{line}: run.outputstep: found ") and "mean output_step?" in message
+        message.startswith(f"lmap: {SPEC}:{line}: run.outputstep: found ")
+        and 'mean "output_step"?' in message
         for message in found
     ), found
+
+
+@pytest.mark.parametrize(
+    ("key", "hint"),
+    [("speed_khm", "speed_kmh"), ("controler", "controller"), ("wheel_profil", "wheel_profile")],
+)
+def test_an_unknown_key_of_a_run_offers_what_only_specs_have(
+    messages: Callable[..., list[str]], key: str, hint: str
+) -> None:
+    [message] = messages(SPEC, "--set", f"run.{key}=3")
+    assert message.startswith(
+        f"lmap: {SPEC}: --set run.{key}: found an unknown key; allowed: contact, controller, "
+    )
+    assert ", speed_kmh, " in message
+    assert message.endswith(f'(did you mean "{hint}"?)')
+
+
+def test_an_unknown_key_of_the_run_of_one_case_of_a_spec(messages: Callable[..., list[str]]) -> None:
+    line = spoil("specs/all_weather.toml", "run = { drive = {", "run = { controler = 3, drive = {")
+    [message] = messages("specs/all_weather.toml")
+    assert message.startswith(
+        f"lmap: specs/all_weather.toml:{line}: test.case[1].run.controler: found an unknown key"
+    )
+    assert ", controller, " in message
+    assert "speed_kmh" not in message
+    assert message.endswith('(did you mean "controller"?)')
 
 
 def test_an_unknown_key_inside_a_tagged_table(messages: Callable[..., list[str]]) -> None:
@@ -112,6 +116,15 @@ def test_a_negative_mass_that_is_set(messages: Callable[..., list[str]]) -> None
     assert message == (
         f"lmap: {SPEC}: --set bogie.mass: found -3 (from $bogie.mass); allowed: a number > 0 kg"
     )
+
+
+def test_numbers_that_are_not_finite_are_named_where_they_stand_in_what_is_set(
+    messages: Callable[..., list[str]],
+) -> None:
+    assert messages(SPEC, "--set", "run.friction={left=nan, right=0.4}", "--set", "secondary.kz=-inf") == [
+        "lmap: --set run.friction.left: found NaN; allowed: a finite number",
+        "lmap: --set secondary.kz: found -inf; allowed: a finite number",
+    ]
 
 
 def test_a_connection_to_a_body_that_does_not_exist(messages: Callable[..., list[str]]) -> None:

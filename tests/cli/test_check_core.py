@@ -4,42 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
-
-import lmap
+from commands import STOPPED, command, environment, run, stopped_by_ctrl_c
 
 pytestmark = [pytest.mark.needs_core, pytest.mark.skipif(sys.platform == "win32", reason="POSIX processes")]
 
 
-def environment() -> dict[str, str]:
-    """With the test's own cache in it."""
-    return {**os.environ, "PYTHONPATH": str(Path(lmap.__file__).parent.parent)}
-
-
 SHORT = ("--set", "track.length=400", "--set", "track.irregularity.period=200")
 """A run that is over soon, long enough for the windows of 5 s."""
-
-
-def command(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "lmap", *arguments]
-
-
-def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command(*arguments),
-        cwd=folder,
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=200,
-    )
 
 
 @pytest.mark.slow
@@ -56,17 +32,8 @@ def test_two_runs_on_one_and_two_threads_give_the_same_parquet_files(tmp_path: P
 
 def test_ctrl_c_stops_the_core_long_before_its_end_and_leaves_nothing(tmp_path: Path) -> None:
     long = command("check", "hunting", "--report", "out", "--set", "track.length=90000")
-    with subprocess.Popen(
-        long, cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        assert process.stderr is not None
-        assert process.stdout is not None
-        assert process.stderr.readline().startswith("running 2 cases")
-        time.sleep(1.0)
-        process.send_signal(signal.SIGINT)
-        # 90 km take minutes. Alone it stops in a tenth of a second; a loaded machine takes what it takes.
-        code = process.wait(timeout=20)
-        assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
+    # 90 km take minutes
+    assert stopped_by_ctrl_c(tmp_path, long, after_s=1.0) == STOPPED
     assert list(tmp_path.iterdir()) == []
 
 

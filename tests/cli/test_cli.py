@@ -2,46 +2,25 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
-import signal
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import polars as pl
 import pytest
+from commands import STOPPED, Ran, contents, environment, stopped_by_ctrl_c
 
 from lmap import prepare
-from lmap.cli import app
 
 FAKE = Path(__file__).parent / "fake_cli.py"
 
 
-class Ran(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
-@pytest.fixture
-def lmap(toy: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Ran]:
-    """Runs a command in the toy's folder."""
-
-    def run(*arguments: str) -> Ran:
-        monkeypatch.setattr(sys, "argv", ["lmap", *arguments])
-        capfd.readouterr()
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        assert isinstance(left.value.code, int)
-        return Ran(left.value.code, out, err)
-
-    return run
+pytestmark = pytest.mark.usefixtures("toy")
 
 
 def test_cache_shows_and_clears(lmap: Callable[..., Ran]) -> None:
@@ -279,46 +258,65 @@ def test_a_report_that_cannot_be_written_leaves_the_table_and_no_folder(
         assert last == "lmap: the report cannot be written to a/out: No space left on device"
 
 
+@pytest.mark.parametrize("place", [".", "sub", "../beside"])
+def test_reports_of_two_clones_hold_the_same_paths_and_none_of_the_machine(
+    lmap: Callable[..., Ran], toy: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    """The same check from the same place in each; a clone's own names appear nowhere."""
+    reports = []
+    for clone in ("first clone", "second clone"):
+        root = toy.parent / clone / "root"
+        shutil.copytree(toy, root)
+        here = root / place
+        here.mkdir(exist_ok=True)
+        monkeypatch.chdir(here)
+        spec = Path(os.path.relpath(root / "specs" / "sway.toml", here.resolve())).as_posix()
+        vehicle = root / "models" / "vehicles" / "toy.toml"
+        assert lmap("check", spec, "--report", "set", "--quiet", "--set", f"vehicle={vehicle}").code == 0
+        for given, out in ((spec, "relative"), (str(root / "specs" / "sway.toml"), "absolute")):
+            assert lmap("check", given, "--report", out, "--quiet").code == 0
+            assert lmap("sweep", given, "--vary", "run.speed_kmh=90,no", "-o", f"{out} sweep", "-q").code == 2
+        assert (
+            json.loads(Path("relative/verdicts.json").read_text(encoding="utf-8"))["specs"][0]["file"] == spec
+        )
+        written = contents(Path())
+        assert {"relative/index.html", "absolute/junit.xml", "absolute sweep/sweep.parquet"} < written.keys()
+        for name, content in written.items():
+            for word in (clone, str(toy.parent)):
+                assert word.encode() not in content, (name, word)
+        # the page has times of the clock in it
+        reports.append({name: content for name, content in written.items() if not name.endswith(".html")})
+    assert reports[0] == reports[1]
+    assert reports[0]["relative/verdicts.json"] == reports[0]["absolute/verdicts.json"]
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT between processes")
 def test_ctrl_c_stops_long_before_the_end_and_leaves_nothing(toy: Path) -> None:
     command = [sys.executable, str(FAKE), "--slow", "60", "check", "sway", "--report", "out"]
-    source = str(Path(importlib.util.find_spec("lmap").origin).parent.parent)  # type: ignore[union-attr, arg-type]
-    environment = {**os.environ, "PYTHONPATH": source}
     before = sorted(toy.rglob("*"))
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
-    ) as process:
-        assert process.stderr is not None
-        assert process.stdout is not None
-        assert process.stderr.readline().startswith("running 2 cases")
-        process.send_signal(signal.SIGINT)
-        code = process.wait(timeout=20)  # of 60 s; a loaded machine takes its time
-        assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
+    assert stopped_by_ctrl_c(toy, command) == STOPPED
     assert sorted(toy.rglob("*")) == before
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_check_that_was_killed_goes_on_where_it_was(toy: Path) -> None:
-    source = str(Path(importlib.util.find_spec("lmap").origin).parent.parent)  # type: ignore[union-attr, arg-type]
-    environment = {**os.environ, "PYTHONPATH": source}
-
     def command(slow: str) -> list[str]:
         return [sys.executable, str(FAKE), "--slow", slow, "check", "sway"]
 
     # the stand-in runs one case after the other: the first is done after 2 s, the second would be after 4
     with subprocess.Popen(
-        command("2"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+        command("2"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment()
     ) as process:
         assert process.stderr is not None
         for line in process.stderr:
             if ": done" in line:
                 process.kill()
                 break
-    again = subprocess.run(command("0"), capture_output=True, text=True, env=environment, check=False)
+    again = subprocess.run(command("0"), capture_output=True, text=True, env=environment(), check=False)
     assert again.returncode == 0
     assert again.stderr.startswith("running 1 case on 1 thread, 1 known from before\n")
-    third = subprocess.run(command("60"), capture_output=True, text=True, env=environment, check=False)
+    third = subprocess.run(command("60"), capture_output=True, text=True, env=environment(), check=False)
     assert (third.returncode, third.stdout, third.stderr) == (0, again.stdout, "")
 
 

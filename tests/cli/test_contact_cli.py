@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from lmap.cli import app
+from commands import Ran
 
 pytestmark = pytest.mark.needs_core
 ROOT = Path(__file__).parents[2]
 PAIR = ("anzr1", "as60", "--inclination", "1:20", "--gauge-depth", "16")
-Run = Callable[..., tuple[object, str, str]]
+Run = Callable[..., Ran]
 
 
 @pytest.fixture
@@ -28,29 +27,17 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def run(place: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
-    """Exit code, stdout and stderr of `lmap contact ...`."""
-
-    def call(*arguments: str) -> tuple[object, str, str]:
-        monkeypatch.setattr(sys, "argv", ["lmap", "contact", *arguments])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        return left.value.code, out, err
-
-    return call
+def run(place: Path, lmap: Run) -> Run:
+    """`lmap contact ...`."""
+    return functools.partial(lmap, "contact")
 
 
 @pytest.fixture
-def message(place: Path, run: Run) -> Callable[..., str]:
-    """The one line on stderr; asserts exit code 2 and that nothing was written."""
+def message(place: Path, refused: Callable[..., list[str]]) -> Callable[..., str]:
+    """The one line that bad input says."""
 
     def call(*arguments: str) -> str:
-        before = sorted(place.rglob("*"))
-        code, out, err = run(*arguments, "--out", "out")
-        assert (code, out) == (2, ""), err
-        assert sorted(place.rglob("*")) == before
-        [line] = err.splitlines()
+        [line] = refused("contact", *arguments, "--out", "out")
         return line
 
     return call

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
-import signal
-import subprocess
 import sys
-import time
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
 import fmus
 import pytest
+from commands import STOPPED, Ran, command, spoil, stopped_by_ctrl_c
 
 import lmap
-from lmap.cli import app
 from lmap.errors import InputProblem
 from lmap.verdict import SpecVerdict
 
@@ -38,40 +34,14 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def check(
-    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> Callable[..., tuple[int, str, str]]:
-    """Exit code, stdout and stderr of a check."""
+def message(place: Path, refused: Callable[..., list[str]]) -> Callable[..., str]:
+    """The one line that a bad check says."""
 
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["lmap", "check", SPEC, *arguments])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        return int(str(left.value.code)), out, err
-
-    return run
-
-
-@pytest.fixture
-def message(place: Path, check: Callable[..., tuple[int, str, str]]) -> Callable[..., str]:
-    """The one line that a bad check says; asserts that it left with 2 and wrote nothing."""
-
-    def run(*arguments: str) -> str:
-        before = sorted(place.rglob("*"))
-        code, out, err = check(*arguments, *SHORT, "--quiet", "--report", "out")
-        assert (code, out) == (2, ""), err
-        assert sorted(place.rglob("*")) == before
-        [line] = err.splitlines()
+    def run() -> str:
+        [line] = refused("check", SPEC, *SHORT, "--quiet", "--report", "out")
         return line
 
     return run
-
-
-def spoil(path: Path, old: str, new: str) -> None:
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
 def one(name: str) -> SpecVerdict:
@@ -90,11 +60,12 @@ def test_the_example_gives_what_the_vehicles_own_controller_gives() -> None:
         assert float(difference) < 1e-9 * scale, (name, difference)  # type: ignore[arg-type]
 
 
-def test_it_says_that_nothing_is_kept_and_keeps_nothing_of_it(
-    place: Path, check: Callable[..., tuple[int, str, str]]
-) -> None:
+@pytest.mark.usefixtures("place")
+def test_it_says_that_nothing_is_kept_and_keeps_nothing_of_it(lmap: Callable[..., Ran]) -> None:
     for running in ("running 2 cases on 2 threads", "running 1 case on 1 thread, 1 known from before"):
-        code, out, err = check("--json", "--jobs", "2", *SHORT, "--set", "run.drive.period=0.02")
+        code, out, err = lmap(
+            "check", SPEC, "--json", "--jobs", "2", *SHORT, "--set", "run.drive.period=0.02"
+        )
         assert code in (0, 1, 2)
         assert running in err
         [spec] = json.loads(out)["specs"]
@@ -144,19 +115,9 @@ def test_jobs_change_no_bit(place: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_ctrl_c_stops_a_law_and_leaves_nothing(place: Path) -> None:
     before = sorted(place.rglob("*"))
-    long = [sys.executable, "-m", "lmap", "check", SPEC, "--report", "out"]
-    long += ["--set", "run.drive.until.time=3000", "--set", "track.length=90000"]
-    environment = {**os.environ, "PYTHONPATH": str(Path(lmap.__file__).parent.parent)}
-    with subprocess.Popen(
-        long, cwd=place, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        assert process.stderr is not None
-        assert process.stdout is not None
-        assert process.stderr.readline().startswith("running 2 cases")
-        time.sleep(1.0)
-        process.send_signal(signal.SIGINT)
-        code = process.wait(timeout=30)
-        assert (code, process.stdout.read(), process.stderr.read()) == (130, "", "lmap: stopped\n")
+    long = command("check", SPEC, "--report", "out", "--set", "run.drive.until.time=3000")
+    long += ["--set", "track.length=90000"]
+    assert stopped_by_ctrl_c(place, long, after_s=1.0) == STOPPED
     assert sorted(place.rglob("*")) == before
 
 
@@ -254,6 +215,21 @@ def test_a_law_that_fails_is_one_message_that_names_it_and_its_line(
     assert "test.case[0].run.controller" in said, said
     assert "slip_pi:SlipPI" in said, said
     assert expected in said, said
+
+
+@pytest.mark.parametrize("quiet", [(), ("--quiet",)])
+def test_a_law_that_fails_is_told_once(
+    quiet: tuple[str, ...], place: Path, refused: Callable[..., list[str]]
+) -> None:
+    spoil(
+        place / "slip_pi.py",
+        "        error =",
+        '        raise RuntimeError("no torque today")\n        error =',
+    )
+    said = refused("check", SPEC, *SHORT, *quiet)
+    assert [line for line in said if "no torque today" in line] == [said[-1]]
+    assert said[-1].startswith(f"lmap: {SPEC}:")
+    assert quiet or any(line.startswith("slip_pi.py: its control law failed (") for line in said), said
 
 
 # ---- FMUs

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import polars as pl
 import pytest
-
-from lmap.cli import app
+from commands import Ran
 
 pytestmark = pytest.mark.needs_core
 
@@ -48,25 +46,15 @@ Run = Callable[[str], pl.DataFrame]
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lmap: Callable[..., Ran]) -> Run:
     """The frame of the spec's one case with a friction given by `--set`."""
     monkeypatch.chdir(tmp_path)
     Path("friction.toml").write_text(SPEC, encoding="utf-8")
 
     def call(friction: str) -> pl.DataFrame:
-        arguments = [
-            "check",
-            "friction.toml",
-            "--quiet",
-            "--report",
-            "out",
-            "--set",
-            f"run.friction={friction}",
-        ]
-        monkeypatch.setattr(sys, "argv", ["lmap", *arguments])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        assert left.value.code == 0, capfd.readouterr().err
+        friction_set = ("--set", f"run.friction={friction}")
+        code, _, err = lmap("check", "friction.toml", "--quiet", "--report", "out", *friction_set)
+        assert code == 0, err
         [path] = Path("out", "cases").glob("*.parquet")
         frame = pl.read_parquet(path)
         path.unlink()

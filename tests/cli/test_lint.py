@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import Ran
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lmap.cli import app
 from lmap.errors import InputProblem
 from lmap.lint import lint
 from lmap.vehicle import lint_codes
@@ -22,7 +22,7 @@ from lmap.vehicle import lint_codes
 pytestmark = pytest.mark.needs_core
 ROOT = Path(__file__).parents[2]
 VEHICLE = "models/vehicles/coco134.toml"
-Run = Callable[..., tuple[object, str, str]]
+Run = Callable[..., Ran]
 
 
 @pytest.fixture
@@ -34,18 +34,10 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def run(place: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
-    """Exit code, stdout and stderr of `lmap lint ...`."""
+def run(place: Path, lmap: Run, monkeypatch: pytest.MonkeyPatch) -> Run:
+    """`lmap lint ...`."""
     monkeypatch.setenv("COLUMNS", "200")
-
-    def call(*arguments: str) -> tuple[object, str, str]:
-        monkeypatch.setattr(sys, "argv", ["lmap", "lint", *arguments])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        return (left.value.code, out, err)
-
-    return call
+    return functools.partial(lmap, "lint")
 
 
 def spoil(old: str, new: str) -> int:

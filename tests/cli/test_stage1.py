@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-
-from lmap.cli import app
+from commands import Ran
 
 pytestmark = pytest.mark.needs_core
 ROOT = Path(__file__).parents[2]
@@ -22,7 +20,7 @@ Check = Callable[..., tuple[int, list[dict[str, Any]]]]
 
 
 @pytest.fixture
-def check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Check:
+def check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lmap: Callable[..., Ran]) -> Check:
     """`lmap check specs/` with copies of these specs in it: exit code and the specs' verdicts."""
     monkeypatch.chdir(tmp_path)
 
@@ -32,11 +30,9 @@ def check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.Capture
         for name in names:
             if not (folder / f"{name}.toml").exists():
                 shutil.copy(ROOT / "specs" / f"{name}.toml", folder)
-        monkeypatch.setattr(sys, "argv", ["lmap", "check", "specs/", "--json", "--quiet"])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        verdicts: list[dict[str, Any]] = json.loads(capfd.readouterr().out)["specs"]
-        return (left.value.code if isinstance(left.value.code, int) else 0), verdicts
+        code, out, _ = lmap("check", "specs/", "--json", "--quiet")
+        verdicts: list[dict[str, Any]] = json.loads(out)["specs"]
+        return code, verdicts
 
     return run
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import Ran, spoil
 
 from lmap import vehicle
-from lmap.cli import app
 from lmap.errors import InputProblem
 
 pytestmark = pytest.mark.needs_core
@@ -21,8 +20,6 @@ BOBO = "models/vehicles/bobo86.toml"
 WAGON = "models/vehicles/wagon2.toml"
 COACH = "models/vehicles/manchester1.toml"
 RIG = "models/vehicles/suspended_wheelset.toml"
-
-Run = Callable[..., tuple[int, str, list[str]]]
 
 
 @pytest.fixture
@@ -33,26 +30,18 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+Run = Callable[..., tuple[int, str, list[str]]]
+
+
 @pytest.fixture
-def lmap(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
+def lmap(lmap: Callable[..., Ran]) -> Run:
     """Runs a command: exit code, stdout, lines of stderr."""
 
     def run(*arguments: str) -> tuple[int, str, list[str]]:
-        monkeypatch.setattr(sys, "argv", ["lmap", *arguments])
-        with pytest.raises(SystemExit) as left:
-            app.main()
-        out, err = capfd.readouterr()
-        code = left.value.code
-        return code if isinstance(code, int) else 0, out, err.splitlines()
+        code, out, err = lmap(*arguments)
+        return code, out, err.splitlines()
 
     return run
-
-
-def spoil(path: str, old: str, new: str) -> None:
-    file = Path(path)
-    text = file.read_text(encoding="utf-8")
-    assert old in text, f"{old} is not in {path}"
-    file.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
 SHEAR = 'kind = "shear_spring"'

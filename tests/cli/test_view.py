@@ -3,37 +3,18 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import polars as pl
 import pytest
+from commands import run
 
 import lmap
 
 pytestmark = pytest.mark.needs_core
 
 ROOT = Path(__file__).parents[2]
-
-
-def environment() -> dict[str, str]:
-    """With the test's own cache in it."""
-    return {**os.environ, "PYTHONPATH": str(Path(lmap.__file__).parent.parent)}
-
-
-def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "lmap", *arguments],
-        cwd=folder,
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
 
 
 def scene_of(page: Path) -> dict[str, object]:

@@ -1,5 +1,5 @@
 /* The slip law as an FMU of FMI 2.0 for co-simulation. Prototypes as the standard has them (FMI 2.0.4, chapters 2.1 and 4.2). */
-#include "slip_law.h"
+#include <stddef.h>
 
 typedef void (*Logger)(void *, const char *, int, const char *, const char *, ...);
 
@@ -11,10 +11,15 @@ typedef struct {
     void *environment;
 } Callbacks;
 
-typedef struct {
-    Law law;
-    const Callbacks *callbacks;
-} Instance;
+typedef const Callbacks *Caller;
+
+static void tell(Caller caller, int status, const char *message) {
+    if (caller != NULL && caller->logger != NULL) {
+        caller->logger(caller->environment, "slip", status, "error", message);
+    }
+}
+
+#include "instance.h"
 
 EXPORT const char *fmi2GetTypesPlatform(void) {
     return "default";
@@ -27,15 +32,7 @@ EXPORT const char *fmi2GetVersion(void) {
 EXPORT void *fmi2Instantiate(const char *name, int type, const char *guid, const char *resources,
                              const Callbacks *callbacks, int visible, int logging) {
     (void)name, (void)type, (void)resources, (void)visible, (void)logging;
-    if (strcmp(guid, "{slip-law-2}") != 0) {
-        return NULL;
-    }
-    Instance *instance = calloc(1, sizeof *instance);
-    if (instance != NULL) {
-        law_reset(&instance->law);
-        instance->callbacks = callbacks;
-    }
-    return instance;
+    return instance_new(guid, "{slip-law-2}", callbacks);
 }
 
 EXPORT void fmi2FreeInstance(void *instance) {
@@ -52,16 +49,11 @@ EXPORT int fmi2GetReal(Instance *instance, const unsigned *references, size_t co
 
 EXPORT int fmi2DoStep(Instance *instance, double t, double step, int final) {
     (void)final;
-    const int status = law_step(&instance->law, t, step);
-    if (status != OK && instance->callbacks != NULL && instance->callbacks->logger != NULL) {
-        instance->callbacks->logger(instance->callbacks->environment, "slip", status, "error", "the inverter tripped");
-    }
-    return status;
+    return instance_step(instance, t, step);
 }
 
 EXPORT int fmi2Reset(Instance *instance) {
-    law_reset(&instance->law);
-    return OK;
+    return instance_reset(instance);
 }
 
 NOTHING(fmi2SetDebugLogging)

@@ -1,15 +1,21 @@
 /* The slip law as an FMU of FMI 3.0 for co-simulation. Prototypes as the standard has them (FMI 3.0.1, chapters 2.2 and 4.2). */
 #include <stdbool.h>
-
-#include "slip_law.h"
+#include <stddef.h>
 
 typedef void (*LogMessage)(void *, int, const char *, const char *);
 
 typedef struct {
-    Law law;
     void *environment;
     LogMessage log;
-} Instance;
+} Caller;
+
+static void tell(Caller caller, int status, const char *message) {
+    if (caller.log != NULL) {
+        caller.log(caller.environment, status, "error", message);
+    }
+}
+
+#include "instance.h"
 
 EXPORT const char *fmi3GetVersion(void) {
     return "3.0";
@@ -20,16 +26,7 @@ EXPORT void *fmi3InstantiateCoSimulation(const char *name, const char *token, co
                                          void *environment, LogMessage log, void *intermediate) {
     (void)name, (void)resources, (void)visible, (void)logging, (void)events, (void)early;
     (void)required, (void)count, (void)intermediate;
-    if (strcmp(token, "{slip-law-3}") != 0) {
-        return NULL;
-    }
-    Instance *instance = calloc(1, sizeof *instance);
-    if (instance != NULL) {
-        law_reset(&instance->law);
-        instance->environment = environment;
-        instance->log = log;
-    }
-    return instance;
+    return instance_new(token, "{slip-law-3}", (Caller){environment, log});
 }
 
 EXPORT void fmi3FreeInstance(void *instance) {
@@ -50,16 +47,11 @@ EXPORT int fmi3DoStep(Instance *instance, double t, double step, bool final, boo
     (void)final;
     *event = *terminate = *early = false;
     *last = t + step;
-    const int status = law_step(&instance->law, t, step);
-    if (status != OK && instance->log != NULL) {
-        instance->log(instance->environment, status, "error", "the inverter tripped");
-    }
-    return status;
+    return instance_step(instance, t, step);
 }
 
 EXPORT int fmi3Reset(Instance *instance) {
-    law_reset(&instance->law);
-    return OK;
+    return instance_reset(instance);
 }
 
 NOTHING(fmi3SetDebugLogging)

@@ -1,4 +1,4 @@
-/* Slip control of a locomotive with two bogies of three axles, as an FMU holds it: what fmi2.c and fmi3.c share.
+/* Slip control of a locomotive with two bogies of three axles, as an FMU holds it; instance.h makes a model of it.
  *
  * One torque for each bogie: a PI law holds the slip of its fastest axle at the reference, between nothing and the torque
  * limit; the integral is kept where the torque just stays in between. The law is that of the vehicle's own controller.

@@ -12,7 +12,7 @@ import math
 import re
 import time
 import tomllib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import polars as pl
@@ -68,12 +68,27 @@ def fingerprint() -> str:
 
 def toml_to_json(text: str) -> str:
     try:
-        return json.dumps(tomllib.loads(text))
+        data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         at = re.search(r"line (\d+)", str(error))
         fault = _fault([], str(error), "TOML")
         fault["line"] = int(at[1]) if at else text.count("\n") + 1
         raise InputError([fault]) from None
+    faults = [
+        {**_fault(key, found, "a finite number"), "line": toml_line(text, key)}
+        for key, found in _not_finite(data, ())
+    ]
+    if faults:
+        raise InputError(faults)
+    return json.dumps(data)
+
+
+def _not_finite(data: Any, key: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    if isinstance(data, float) and not math.isfinite(data):
+        yield key, "NaN" if math.isnan(data) else str(data)
+    elif isinstance(data, dict | list):
+        for step, value in data.items() if isinstance(data, dict) else enumerate(data):
+            yield from _not_finite(value, (*key, step))
 
 
 def toml_line(text: str, key: Sequence[str | int]) -> int | None:

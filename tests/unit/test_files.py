@@ -61,3 +61,36 @@ def test_a_file_that_cannot_be_read_says_why(tmp_path: Path, monkeypatch: pytest
         files.read_text(Path("bytes.toml"), "spec")
     with pytest.raises(InputProblem, match="a folder"):
         files.read_text(tmp_path, "spec")
+
+
+def test_a_path_is_shown_from_the_working_folder_or_from_what_ships(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mine = tmp_path / "mine"
+    checkout, package = tmp_path / "checkout", mine / ".venv" / "lmap"
+    below, beside = write(mine / "specs" / "x.toml"), write(tmp_path / "other" / "x.toml")
+    shipped = write(package / "data" / "specs" / "hunting.toml")
+    checked_out = write(checkout / "specs" / "hunting.toml")
+    monkeypatch.setattr(files, "_PACKAGE", package)
+    monkeypatch.setattr(files, "shipped_roots", lambda: [package / "data", checkout])
+    monkeypatch.chdir(mine)
+    assert [files.shown(path) for path in (below, beside, shipped, checked_out, Path("gone.toml"))] == [
+        "specs/x.toml",
+        "../other/x.toml",
+        "<lmap>/specs/hunting.toml",
+        "<lmap>/specs/hunting.toml",
+        "gone.toml",
+    ]
+    monkeypatch.chdir(tmp_path)
+    assert files.shown(checked_out) == "checkout/specs/hunting.toml"
+    assert files.shown(shipped) == "<lmap>/specs/hunting.toml"
+    monkeypatch.chdir(checkout / "specs")
+    assert files.shown(write(checkout / "models" / "x.toml")) == "../models/x.toml"
+
+
+def test_a_report_keeps_nothing_of_the_machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    elsewhere = Path(Path.cwd().anchor) / "no-such-root" / "someone" / "x.toml"
+    assert files.shown(elsewhere) == elsewhere.as_posix()
+    assert files.recorded(elsewhere) == "x.toml"
+    assert files.recorded(tmp_path / "specs" / "x.toml") == "specs/x.toml"

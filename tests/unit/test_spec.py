@@ -67,7 +67,7 @@ def edited(old: str, new: str) -> str:
             '12: run.speed: found "fast"; allowed: a number > 0 (m/s), "110% design", or a list of these',
         ),
         ("friction = 0.4", "friction = -0.4", "13: run.friction: found -0.4; allowed: a number >= 0"),
-        ("friction = 0.4", "friction = nan", "13: run.friction: found nan; allowed: a finite number"),
+        ("friction = 0.4", "friction = nan", "13: run.friction: found NaN; allowed: a finite number"),
         (
             "max_abs = 0.35",
             "max_asb = 0.35",
@@ -135,9 +135,18 @@ def test_two_ways_of_writing_the_speed_are_refused() -> None:
     assert overrides.checked({"run.speed_kmh": 100.0}) == {"run.speed_kmh": 100.0}
 
 
-def test_a_setting_that_is_not_finite_is_refused() -> None:
-    with pytest.raises(InputProblem, match="--set a: found nan; allowed: a finite number"):
-        overrides.parse(["a=nan"])
+@pytest.mark.parametrize(
+    ("setting", "messages"),
+    [
+        ("a=nan", ["--set a: found NaN"]),
+        ("run.friction={left=nan, right=0.4}", ["--set run.friction.left: found NaN"]),
+        ("a.b=[1, {c=-inf}, inf]", ["--set a.b[1].c: found -inf", "--set a.b[2]: found inf"]),
+    ],
+)
+def test_a_setting_that_is_not_finite_is_refused_where_it_stands(setting: str, messages: list[str]) -> None:
+    with pytest.raises(InputProblem) as raised:
+        overrides.parse([setting])
+    assert str(raised.value).splitlines() == [f"{one}; allowed: a finite number" for one in messages]
 
 
 def test_four_names_mean_the_spec_and_all_others_the_vehicle() -> None:

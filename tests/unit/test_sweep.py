@@ -49,6 +49,7 @@ def test_a_range_has_both_ends_and_decimal_values_between() -> None:
         ("a=1..x", "two finite numbers"),
         ("a=3..3", "a range with two ends"),
         ("a=1,,2", "a value between commas"),
+        ("a=1,nan", r"--vary a\[1\]: found NaN; allowed: a finite number"),
     ],
 )
 def test_what_is_no_variation_is_refused(text: str, message: str) -> None:

@@ -33,19 +33,21 @@ def values(acceptance: lmap.Acceptance) -> dict[tuple[str, str], tuple[float, st
 
 
 @pytest.mark.slow
-def test_hunting_passes_with_figures_of_the_papers_order(acceptance: lmap.Acceptance) -> None:
-    """Bands: average peak over 5 s of the filtered acceleration, L/V sustained over 2 m; the paper prints 0.055 and
-    0.059 g lateral, 0.037 g vertical, 0.133 and 0.134 L/V (Table 5)."""
+def test_hunting_passes_with_the_figures_that_stand_beside_the_papers(
+    acceptance: lmap.Acceptance, compare: Compare
+) -> None:
+    """Average peak over 5 s of the filtered acceleration, L/V sustained over 2 m. The paper prints 0.055 and 0.059 g
+    lateral, 0.037 g vertical, 0.133 and 0.134 L/V (Table 5): why ours are larger stands in the same document."""
     assert acceptance.outcome is lmap.Outcome.PASS
     found = values(acceptance)
-    bands = {
-        "lateral acceleration at the bogie centres": (0.03, 0.25),
-        "vertical acceleration at the bogie centres": (0.02, 0.08),
-        "wheel L/V sustained over 2 m": (0.05, 0.5),
+    documented = {
+        "lateral acceleration at the bogie centres": (0.116, 0.185),
+        "vertical acceleration at the bogie centres": (0.036, 0.037),
+        "wheel L/V sustained over 2 m": (0.271, 0.359),
     }
-    for name, (low, high) in bands.items():
-        for case in ("anzr1_worn_1", "anzr1_worn_2"):
-            assert low <= found[name, case][0] <= high, (name, case, found[name, case])
+    for name, figures in documented.items():
+        for case, figure in zip(("anzr1_worn_1", "anzr1_worn_2"), figures, strict=True):
+            compare(f"{name}, {case}", found[name, case][0], figure, 0.001, "ours: docs/concepts/hunting.md")
 
 
 @pytest.mark.slow

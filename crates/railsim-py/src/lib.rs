@@ -41,9 +41,9 @@ mod module {
     #[pymodule_export]
     use crate::profile::{inspect_profile, profile_quality, read_profile, smooth_profile, write_profile};
     #[pymodule_export]
-    use crate::run::{channels, check_case, fingerprint, run_cases, track_extremes, version};
+    use crate::run::{channel_parts, channels, check_case, fingerprint, run_cases, track_extremes, version};
     #[pymodule_export]
     use crate::toml::{toml_line, toml_to_json};
     #[pymodule_export]
-    use crate::vehicle::{vehicle_resolve, vehicle_schema};
+    use crate::vehicle::{case_schema, vehicle_resolve, vehicle_schema};
 }

@@ -49,6 +49,12 @@ pub fn channels(
     Ok(channels.into_iter().map(|c| (c.name, c.unit, c.meaning)).collect())
 }
 
+/// Last part of the name, unit and meaning of every channel that any case may have.
+#[pyfunction]
+pub fn channel_parts() -> Vec<(&'static str, &'static str, &'static str)> {
+    railsim::run::channel::parts().to_vec()
+}
+
 /// Smallest and largest value of each track irregularity.
 #[pyfunction]
 #[pyo3(signature = (case_json, tables=None))]

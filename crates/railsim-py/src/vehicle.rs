@@ -30,6 +30,12 @@ pub fn vehicle_schema() -> String {
     schema::vehicle_schema().to_string()
 }
 
+/// JSON schemas of a case's tables, by name.
+#[pyfunction]
+pub fn case_schema() -> String {
+    schema::case_schema().to_string()
+}
+
 /// A JSON argument.
 pub fn parse<T: DeserializeOwned>(key: &str, text: &str) -> railsim::Result<T> {
     let fault = |e: serde_json::Error| Fault::new(KeyPath::of(key), e.to_string(), "a JSON object");

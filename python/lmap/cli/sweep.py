@@ -40,8 +40,9 @@ def sweep(
     that cannot be judged is a row with the verdict "error". Exit code: 0 every variant passes, 1 some fail, 2 some
     cannot be judged or bad input, 130 stopped by Ctrl-C.
 
-    Example: lmap sweep hunting --vary run.speed_kmh=80..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
+    Example: lmap sweep hunting --vary run.speed_kmh=100..160 --samples 9 --vary yaw_damper.cx=0,1.5e5 --out out/
     """
+    from lmap import files
     from lmap.check import report_folder, write_page
     from lmap.errors import LmapError
     from lmap.execute.progress import choose
@@ -62,10 +63,9 @@ def sweep(
         cache=not no_cache,
     )
     typer.echo(summary(frame, keys))
-    write_page(folder / "sweep.html", page(spec, frame, keys))
+    name = files.recorded(Path(spec)) if files.SPEC.is_path(spec) else spec
+    write_page(folder / "sweep.html", page(name, frame, keys))
     try:
-        from lmap import files
-
         files.put(folder / "sweep.parquet", frame.write_parquet)
     except OSError as error:
         raise LmapError(f"{folder / 'sweep.parquet'} cannot be written: {error.strerror or error}") from error

@@ -63,6 +63,11 @@ class CaseOutcome:
             return None
         return f"the run ended early: {self.ended.get('message') or self.ended.get('kind')}"
 
+    @property
+    def progress(self) -> str | None:
+        """`trouble` as progress says it: what a control law did is told in the end, once, with file and line."""
+        return "its control law failed" if self.ended.get("kind") == REFUSED else self.trouble
+
 
 def default_jobs() -> int:
     """The processors that this process may use."""
@@ -207,7 +212,7 @@ def run_queue(
                 tell(index, case, store.keep(case.hash, outcome))
 
     def tell(index: int, case: Case, outcome: CaseOutcome) -> None:
-        hears.done(index, outcome.wall_s, outcome.trouble)
+        hears.done(index, outcome.wall_s, outcome.progress)
         heard(case.hash, outcome)
 
     with hears, queue:

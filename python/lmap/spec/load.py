@@ -13,7 +13,7 @@ from lmap import files, toml
 from lmap.criteria.chain import chain_problems
 from lmap.errors import InputProblem, KeyPath, Problem, listed, nearest_hint, problems_of_validation
 from lmap.spec import overrides
-from lmap.spec.model import KNOWN_KEYS, Spec
+from lmap.spec.model import KNOWN_KEYS, SPEC_KEYS_OF_RUN, Spec
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +44,19 @@ class LoadedSpec:
         """Named parameters of the vehicle that are set."""
         return overrides.split(self.settings)[1]
 
+    @property
+    def recorded_settings(self) -> dict[str, Any]:
+        """The settings as reports keep them: files by paths that hold nothing of this machine."""
+        return {
+            key: files.recorded(Path(value))
+            if isinstance(value, str) and Path(value).is_absolute()
+            else value
+            for key, value in self.settings.items()
+        }
+
     def locate(self, problem: Problem) -> Problem:
         """A problem whose key starts at the spec, with file and line, or with `--set` as its origin."""
+        problem = _with_spec_keys(problem)
         return _locate(problem, self.document, self.settings, self.given, self.variant)
 
 
@@ -122,6 +133,16 @@ def _repeated(spec: Spec) -> list[Problem]:
             problems.append(Problem(key=key, found=f'"{criterion.name}" again', allowed="a name of its own"))
         seen.add(criterion.name)
     return problems
+
+
+def _with_spec_keys(problem: Problem) -> Problem:
+    """An unknown key of a run, which the core has found, with the keys that only specs have among the allowed ones."""
+    if problem.key[-2:-1] != ("run",) or not problem.found.startswith("an unknown key"):
+        return problem
+    own = SPEC_KEYS_OF_RUN if len(problem.key) == 2 else SPEC_KEYS_OF_RUN - {"speed_kmh"}
+    known = sorted({*problem.allowed.split(", "), *own})
+    hint = nearest_hint(str(problem.key[-1]), known)
+    return replace(problem, allowed=", ".join(known), hint=hint)
 
 
 def _locate(

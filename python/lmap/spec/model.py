@@ -195,6 +195,10 @@ class Spec(BaseModel):
     criterion: list[Criterion] = Field(min_length=1)
 
 
+SPEC_KEYS_OF_RUN = frozenset({"controller", "speed_kmh"})
+"""Keys of `[run]` that the core, which knows cases, has not; a case within a spec (`[[test.case]]`) writes its speed
+beside its `run`."""
+
 KNOWN_KEYS: dict[tuple[str | int, ...], list[str]] = {
     (): list(Spec.model_fields),
     ("run",): list(RunPart.model_fields),

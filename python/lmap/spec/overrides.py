@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from lmap import toml
@@ -44,11 +45,10 @@ def parse(settings: Iterable[str]) -> dict[str, Any]:
                 Problem(key=("--set",), found=found, allowed="each key once, one way of writing it")
             )
             continue
-        parsed[key] = value(text)
-        problems += [
-            Problem(key=(f"--set {key}",), found=text, allowed="a finite number")
-            for _ in toml.not_finite(parsed[key])
-        ]
+        try:
+            parsed[key] = value(text, f"--set {key}")
+        except InputProblem as error:
+            problems += error.problems
     if problems:
         raise InputProblem(problems)
     return parsed
@@ -73,11 +73,17 @@ def checked(settings: Any) -> dict[str, Any]:
     return found_
 
 
-def value(text: str) -> Any:
-    """A value as TOML writes it, else the text itself."""
+def value(text: str, origin: str) -> Any:
+    """A value as TOML writes it, else the text itself.
+
+    An `InputProblem`, keys from `origin` on, for what TOML has and a case has not: numbers that are not finite, dates.
+    """
     try:
         data = toml.loads(f"value = {text}\n")
-    except InputProblem:
+    except InputProblem as error:
+        if all(one.key[:1] == ("value",) for one in error.problems):
+            told = [replace(one, key=(origin, *one.key[1:]), line=None) for one in error.problems]
+            raise InputProblem(told) from None
         return text
     return data["value"] if list(data) == ["value"] else text
 

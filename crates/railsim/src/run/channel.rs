@@ -100,6 +100,12 @@ const PARTS: [(&str, &str, &str); 71] = [
     ("z", "m", "height: depth below the top of rail, negative above"),
 ];
 
+/// Last part of every name that a channel may have, with unit and meaning, sorted.
+#[must_use]
+pub fn parts() -> &'static [(&'static str, &'static str, &'static str)] {
+    &PARTS
+}
+
 /// Unit and meaning that go with the last part of a channel name.
 #[must_use]
 pub fn describe(name: &str) -> Option<(&'static str, &'static str)> {

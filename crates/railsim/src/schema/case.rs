@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
 use super::check::{self, unknown};
 use super::document::{Document, finish};
@@ -27,6 +27,12 @@ pub const FORMAT: u64 = 1;
 
 /// A profile needs this many points for a spline with a meaningful curvature.
 const LEAST_POINTS: usize = 8;
+
+/// JSON schemas of a case's tables `track` and `run`, by name: keys, units, ranges, meanings.
+#[must_use]
+pub fn case_schema() -> Json {
+    json!({ "track": check::schema_of::<Track>(), "run": check::schema_of::<Run>() })
+}
 
 /// One simulation: vehicle, track, run and all the data that they name.
 #[derive(Debug, Clone, PartialEq)]

@@ -20,7 +20,7 @@ pub mod track;
 mod vehicle;
 mod written;
 
-pub use case::{Case, FORMAT, ProfileData, ProfileKind};
+pub use case::{Case, FORMAT, ProfileData, ProfileKind, case_schema};
 pub use document::vehicle_schema;
 pub use run::{Run, RunKind};
 pub use summary::resolve_summary;
