@@ -38,7 +38,9 @@ def test_there_are_specs() -> None:
 
 @pytest.mark.parametrize("spec", SPECS, ids=lambda path: path.stem)
 def test_every_spec_has_a_twin(spec: Path) -> None:
-    assert spec.stem in [twin.stem for twin in TWINS]  # and <spec>-<what>.toml for what that one does not reach
+    assert spec.stem in [
+        twin.stem for twin in TWINS
+    ]  # and <spec>-<what>.toml for what that one does not reach
 
 
 @pytest.mark.parametrize("twin", TWINS, ids=lambda path: path.stem)
