@@ -83,6 +83,14 @@ ROOT = Path(__file__).resolve().parents[2]
         ("coupler_forces", {"test.ways": []}, "ways or stepped"),
         ("coupler_forces", {"test.stepped": [{"label": "x"}]}, "shank"),
         ("coupler_forces_run", {"test.shank": 0.0}, "test.shank: found 0"),
+        (
+            "coupler_forces_run",
+            {"test.shank": 750.0},
+            "test.shank: found 750 m; allowed: below half the length",
+        ),
+        ("small_curve", {"run.couplers.shank": 750.0}, "run.couplers.shank: found 750 m"),
+        ("small_curve", {"run.couplers": {"shank": 0.8, "front": [[0.0, 1e5]]}}, "front.*beside run.drive"),
+        ("small_curve", {"vehicle": "wagon2"}, "run.couplers: found it with a vehicle without"),
     ],
 )
 def test_bad_input_is_one_message_each(

@@ -1,73 +1,95 @@
-"""Angles of the coupler between two equal vehicles against the chords of a curve."""
+"""Angles of the couplers between equal vehicles against the chords of a curve, in both planes, through the core."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import polars as pl
 import pytest
 
-from lmap.errors import InputProblem
+from lmap.analyse import vehicle_case
 from lmap.formulas import coupler_angle
-from lmap.procedures.couplers import UNITS, Body, Line, with_angles
+from lmap.simulate import simulate
+from lmap.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import polars as pl
+
+pytestmark = [pytest.mark.needs_core, pytest.mark.slow]
 
 Compare = Callable[..., None]
-BODY = Body(name="carbody", length=22.0, pivot=10.2, centre=0.0, below=1.05)
+LENGTH, PIVOTS, SHANK = 22.0, 13.2, 0.8
+"""Over couplers, between bogie centres, from a coupler's pivot to its pulling face, m: coco134."""
+BELOW = 1.95 - 0.90
+"""Couplers under the car body's centre of mass, m."""
+ENDS = {"front": 1.0, "rear": -1.0}
 
 
-def standing(places: list[float], layout: list[dict[str, object]]) -> pl.DataFrame:
-    """A body whose middle keeps to the track, as bogies 6.6 m from it make it do in a full curve."""
-    s = np.array(places)
-    none = np.zeros_like(s)
-    poses = {f"carbody.{part}": none for part in ("y", "phi", "theta", "psi")}
-    frame = pl.DataFrame({"s": s, **poses, "carbody.z": none - 1.95})
-    return with_angles(frame, BODY, Line(layout, max(places)))
+def passed(layout: list[dict[str, Any]]) -> pl.DataFrame:
+    """coco134 between equal neighbours, slowly until all three are on the layout's third part."""
+    vehicle = Vehicle.load("coco134")
+    run = {
+        "kind": "time",
+        "speed": 4.0,
+        "friction": 0.4,
+        "integrator": {"kind": "ros2", "step": 0.001},
+        "output_step": 0.05,
+        "couplers": {"shank": SHANK},
+    }
+    track = {"length": 80.0, "layout": layout}
+    return simulate(
+        vehicle_case(vehicle.data, vehicle.document.path, run, label="between neighbours", track=track)
+    )
 
 
-@pytest.mark.parametrize("radius", [160.0, -160.0, 800.0])
+def stands(frame: pl.DataFrame, name: str) -> float:
+    """Mean over the last second."""
+    return float(frame[name][-20:].mean())  # type: ignore[arg-type]
+
+
+def moved(frame: pl.DataFrame, part: str) -> float:
+    """Where the car body stands against where it stood on straight level track."""
+    return stands(frame, f"carbody.{part}") - float(frame[f"carbody.{part}"][0])
+
+
+@pytest.mark.parametrize("radius", [300.0, -300.0])
 def test_in_a_full_curve_it_is_half_the_turn_between_the_chords(radius: float, compare: Compare) -> None:
-    frame = standing([60.0, 70.0, 80.0], [{"kind": "curve", "radius": radius, "length": 100.0}])
-    expected = math.degrees(coupler_angle(BODY.length, radius))
-    for which, sign in (("front", 1.0), ("rear", 1.0)):
-        ours = math.degrees(frame[f"coupler.{which}.yaw"][1])
-        compare(f"R {radius:g} m, {which}, degrees", ours, sign * expected, 0.005 * abs(expected), "L/2R")
-    assert frame["coupler.front.pitch"].abs().max() < 1e-9
+    frame = passed(
+        [
+            {"kind": "tangent", "length": 15.0},
+            {"kind": "clothoid", "length": 20.0},
+            {"kind": "curve", "length": 80.0, "radius": radius},
+        ]
+    )
+    y, phi, psi = (moved(frame, part) for part in ("y", "phi", "psi"))
+    for end, way in ENDS.items():
+        # L/2R is for a body on its chord; this one stands beside it, the neighbour's pivot is two shanks away.
+        aside = y - BELOW * phi - PIVOTS**2 / (8 * radius) + way * (LENGTH / 2 - SHANK) * psi
+        closed = coupler_angle(LENGTH, radius) - aside / (2 * SHANK) - way * psi
+        ours = stands(frame, f"coupler.{end}.yaw")
+        what = (
+            f"R {radius:g} m, {end}, degrees; on its chord {math.degrees(coupler_angle(LENGTH, radius)):.3f}"
+        )
+        compare(what, math.degrees(ours), math.degrees(closed), 0.01, "L/2R, body where it stands")
 
 
-def test_over_a_round_hump_and_through_a_dip_too(compare: Compare) -> None:
-    for gradient, way in ((-0.2, 1.0), (0.2, -1.0)):
-        layout = [
-            {"kind": "tangent", "length": 20.0},
+@pytest.mark.parametrize("gradient", [0.15, -0.15])
+def test_over_a_round_hump_and_through_a_dip_too(gradient: float, compare: Compare) -> None:
+    frame = passed(
+        [
+            {"kind": "tangent", "length": 15.0},
             {"kind": "clothoid", "length": 100.0},
             {"kind": "tangent", "length": 50.0, "gradient": gradient},
         ]
-        radius = 100.0 / math.atan(0.2)
-        frame = standing([70.0, 80.0, 90.0], layout)
-        expected = way * math.degrees(BODY.length / (2.0 * radius))
-        for which in ("front", "rear"):
-            ours = math.degrees(frame[f"coupler.{which}.pitch"][1])
-            compare(f"gradient {gradient:g}, {which}, degrees", ours, expected, 0.01, "L/2R")
-
-
-def test_on_straight_track_there_is_none_whatever_its_gradient() -> None:
-    frame = standing([30.0, 40.0], [{"kind": "tangent", "length": 100.0, "gradient": 0.03}])
-    assert all(frame[name].abs().max() < 1e-9 for name in UNITS)
-
-
-def test_a_vehicle_that_stands_askew_turns_its_coupler() -> None:
-    s = np.array([0.0, 100.0])
-    poses = {f"carbody.{part}": np.zeros(2) for part in ("y", "phi", "theta")}
-    frame = pl.DataFrame({"s": s, **poses, "carbody.z": [-1.95] * 2, "carbody.psi": [0.01] * 2})
-    found = with_angles(frame, BODY, Line([{"kind": "tangent", "length": 100.0}], 100.0))
-    # both pivots are 10.2 m from their middle, and to either side: the coupler lies across
-    across = 2.0 * 10.2 * math.sin(0.01)
-    along = 22.0 - 2.0 * 10.2 * math.cos(0.01)
-    expected = math.atan2(across, along) + 0.01
-    assert found["coupler.front.yaw"][1] == pytest.approx(expected, abs=1e-9)
-
-
-def test_a_passage_that_is_not_linear_is_refused() -> None:
-    with pytest.raises(InputProblem, match=r"track\.layout\[1\]\.kind|layout"):
-        Line([{"kind": "tangent", "length": 10.0}, {"kind": "bloss", "length": 10.0}], 20.0)
+    )
+    radius = 100.0 / math.atan(gradient)  # + a dip, with its centre above
+    z, theta = (moved(frame, part) for part in ("z", "theta"))
+    for end, way in ENDS.items():
+        low = z + PIVOTS**2 / (8 * radius) - way * (LENGTH / 2 - SHANK) * theta
+        closed = coupler_angle(LENGTH, radius) + low / (2 * SHANK) - way * theta
+        ours = stands(frame, f"coupler.{end}.pitch")
+        what = f"R {radius:.0f} m, {end}, degrees; on its chord {math.degrees(coupler_angle(LENGTH, radius)):.3f}"
+        compare(what, math.degrees(ours), math.degrees(closed), 0.01, "L/2R, body where it stands")
+        assert abs(float(frame[f"coupler.{end}.yaw"].abs().max())) < 1e-6  # type: ignore[arg-type]
+        assert abs(float(frame["coupler.rear.pitch"][0])) < 1e-6

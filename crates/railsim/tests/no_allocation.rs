@@ -43,7 +43,7 @@ fn right_hand_side_and_step_allocate_nothing() {
     let mut value = rough("coco134");
     value["track"]["layout"] = json!([
         { "kind": "tangent", "length": 120.0 }, { "kind": "clothoid", "length": 30.0 },
-        { "kind": "curve", "radius": 250.0, "length": 50.0 }
+        { "kind": "curve", "radius": 250.0, "length": 90.0 }
     ]);
     value["run"]["speed"] = json!(3.0);
     value["run"]["drive"] = json!({ "notch": 8, "until": { "time": 1.0 } });

@@ -206,7 +206,7 @@ fn couplers_pull_at_their_angle_on_their_levers() {
     for radius in [300.0, -300.0] {
         let mut value = locomotive(json!({ "until": { "time": 1.0 } }));
         value["run"]["speed"] = json!(1.0);
-        value["track"]["layout"] = json!([{ "kind": "curve", "length": 1000.0, "radius": radius }]);
+        value["track"]["layout"] = json!([{ "kind": "curve", "length": 1100.0, "radius": radius }]);
         let length = value["vehicle"]["outline"]["length_over_couplers"].as_f64().unwrap();
         let height = value["vehicle"]["outline"]["coupler_height"].as_f64().unwrap();
         let mut wrench = |front: f64, rear: f64| {
@@ -256,6 +256,40 @@ fn couplers_pull_at_their_angle_on_their_levers() {
             }
         }
     }
+}
+
+/// A run that is not driven records where its couplers point, and nothing else of them. On straight track its neighbours' couplers are as
+/// high as its own, on whatever springs it stands.
+#[test]
+fn couplers_of_a_run_without_a_driver_only_point() {
+    let mut value = coco134();
+    value["vehicle"]["body"][0]["mass"] = json!(60e3);
+    value["run"]["couplers"] = json!({ "shank": 0.75 });
+    value["track"]["length"] = json!(5.0);
+    let outcome = run(&value);
+    assert_eq!(outcome.ended, Ended::EndOfTrack);
+    let found: Vec<_> = outcome.columns.iter().filter(|(name, _)| name.starts_with("coupler.")).collect();
+    let names: Vec<_> = found.iter().map(|(name, _)| name.as_str()).collect();
+    let wanted = ["coupler.front.yaw", "coupler.front.pitch", "coupler.rear.yaw", "coupler.rear.pitch"];
+    assert_eq!(names, wanted);
+    for (name, angles) in found {
+        assert!(angles.iter().all(|angle| angle.abs() < 1e-6), "{name}: {:?}", &angles[..3]);
+    }
+}
+
+/// A neighbour of a wagon without bogies stands on its wheelsets.
+#[test]
+fn a_neighbour_without_bogies_stands_on_its_wheelsets() {
+    let mut value = coco134();
+    value["vehicle"] = common::read_toml("vehicles/wagon2.toml");
+    value["vehicle"]["outline"] =
+        json!({ "length_over_couplers": 14.0, "coupler_height": 1.0, "width": 3.0, "height": 4.0 });
+    value["run"]["wheel_profile"] = value["vehicle"]["wheel_profile"].clone();
+    value["profiles"]["s1002"] = common::profile("s1002", "wheel");
+    value["run"]["couplers"] = json!({ "shank": 0.5 });
+    let model = compile::model(&case(&value)).unwrap();
+    let wheelbase = model.wheelsets[0].body.position.x - model.wheelsets[1].body.position.x;
+    assert_eq!(model.angled.unwrap().pivots, wheelbase.abs());
 }
 
 /// In a tight curve an outer wheel stands on tread and flange.
@@ -340,7 +374,7 @@ fn what_cannot_be_driven_is_refused_by_key() {
         message(&value)
     };
     type Change<'a> = (&'a str, &'a dyn Fn(&mut Value));
-    let cases: [Change<'_>; 18] = [
+    let cases: [Change<'_>; 23] = [
         ("run.drive.notch", &|v| v["run"]["drive"]["notch"] = json!(9)),
         ("run.drive.notch[1][0]", &|v| v["run"]["drive"]["notch"] = json!([[1.0, 3], [0.5, 4]])),
         ("run.drive.dynamic_brake", &|v| v["run"]["drive"]["dynamic_brake"] = json!(1.5)),
@@ -369,7 +403,23 @@ fn what_cannot_be_driven_is_refused_by_key() {
         ("run.couplers.rear[1][0]", &|v| {
             v["run"]["couplers"] = json!({ "shank": 0.75, "rear": [[1.0, 0.0], [0.5, 1e5]] });
         }),
-        ("run.couplers.shank", &|v| v["run"]["couplers"] = json!({ "shank": 12.0 })),
+        ("run.couplers.shank", &|v| v["run"]["couplers"] = json!({ "shank": 750.0 })),
+        ("run.couplers.shank", &|v| v["run"]["couplers"] = json!({ "shank": 0.0 })),
+        ("run.couplers", &|v| {
+            v["run"]["couplers"] = json!({ "shank": 0.75 });
+            v["vehicle"].as_object_mut().unwrap().remove("outline");
+        }),
+        ("run.couplers.neighbour_pivots", &|v| {
+            v["run"]["couplers"] = json!({ "shank": 0.75, "neighbour_length": 13.0 });
+        }),
+        ("run.couplers.front", &|v| {
+            v["run"]["couplers"] = json!({ "shank": 0.75, "front": [[0.0, 1e5]] });
+            v["run"].as_object_mut().unwrap().remove("drive");
+        }),
+        ("track.layout", &|v| {
+            v["run"]["couplers"] = json!({ "shank": 0.75 });
+            v["track"]["layout"] = json!([{ "kind": "curve", "length": 1000.0, "radius": 300.0 }]);
+        }),
         ("vehicle.traction.notch_curves[0][1][0]", &|v| {
             v["vehicle"]["traction"]["notches"] = json!(1);
             v["vehicle"]["traction"]["notch_curves"] = json!([[[5.0, 1e5], [3.0, 2e5]]]);

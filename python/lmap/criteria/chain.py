@@ -418,11 +418,17 @@ def judge(
     name, reading = min(readings, key=lambda entry: _goodness(criterion, entry[1].value))
     outcome = Outcome.PASS if criterion.passes(reading.value) else Outcome.FAIL
     verdict = _verdict(criterion, index, label, case_hash, tuple(names), outcome, name, reading)
-    if frame.height == 1:
+    if is_constant(frame, name):
         return replace(verdict, at=None)  # a number without a course is nowhere
     rows = signals.counted(frame.columns)
     # rows of an analysis are no moments: the number of the row says where
     return verdict if rows is None else replace(verdict, at={rows: reading.t})
+
+
+def is_constant(frame: pl.DataFrame, name: str) -> bool:
+    """Whether a channel is one number from end to end: a result of the run as a whole."""
+    values = frame.get_column(name).to_numpy()
+    return bool((values == values[0]).all())
 
 
 def _goodness(criterion: Criterion, value: float) -> float:

@@ -18,10 +18,9 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from lmap.errors import InputProblem, JudgementProblem, Problem
+from lmap.errors import InputProblem, JudgementProblem, KeyPath, Problem
 from lmap.formulas import coupler_angle, coupler_unloading
 from lmap.procedures.base import CaseFigures, at_rest, settings, unloading_units, with_unloading
-from lmap.procedures.couplers import ends
 from lmap.spec.case import Case, VehicleData, build, merged
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, DrawnCurve, Fact
@@ -113,6 +112,11 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     return found
 
 
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """The shank is written in `[test]`."""
+    return ("test", "shank") if key == ("run", "couplers", "shank") else key
+
+
 def _couplers(test: Settings, one: Stepped) -> dict[str, Any]:
     """`run.couplers`: between equal neighbours, with the force of `[test]` or without any beside the train's."""
     if one.way is None:
@@ -124,11 +128,21 @@ def _couplers(test: Settings, one: Stepped) -> dict[str, Any]:
 
 def _loads(test: Settings, model: Model, sign: float) -> list[dict[str, Any]]:
     """Both couplers pull (+) or push: along the vehicle they cancel, across they add up, to the inside (pull)."""
-    length, height = ends(model)
+    length, height = _ends(model)
     across = 2.0 * test.force * math.sin(coupler_angle(length, test.radius))
     position = [0.0, 0.0, -height]
     path = [0.0, sign * across]
     return [{"kind": "force", "body": model.bodies[0].name, "axis": "y", "position": position, "path": path}]
+
+
+def _ends(model: Model) -> tuple[float, float]:
+    """Length over couplers and height of the couplers above rail, m."""
+    outline = model.outline
+    if outline is None:
+        found = f"{model.name} without [outline]"
+        allowed = "length_over_couplers and coupler_height in its [outline]"
+        raise InputProblem(Problem(key=("vehicle",), found=found, allowed=allowed))
+    return float(outline["length_over_couplers"]), float(outline["coupler_height"])
 
 
 def derived(spec: Spec, channels: Mapping[str, str]) -> Mapping[str, str]:
@@ -151,7 +165,7 @@ def quantities(
     loads = [float(level[name][0]) for name in level.columns if name.endswith(".Q")]
     if not loads:
         raise JudgementProblem("the vehicle at rest has no wheel loads")
-    length, height = ends(model)
+    length, height = _ends(model)
     angle = coupler_angle(length, test.radius)
     lost = coupler_unloading(test.force, angle, height) / test.wheels_that_share
     formula = pl.DataFrame(

@@ -2,7 +2,7 @@
 
 One run for every wheel profile and speed, and beside them the vehicle at rest (`wheel_forces`). `[test]` says where
 a run begins and ends, which may depend on the speed: so that it lasts long enough before and after what it
-passes; with `coupler` the angles of the coupler to an equal neighbour stand beside the wheel forces (`couplers`).
+passes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from lmap.procedures.base import CaseFigures, expand, settings
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, Fact
-from lmap.view.model import resolved
 
 if TYPE_CHECKING:
     import polars as pl
@@ -58,52 +57,23 @@ class Settings(wheel_forces.Settings):
     """Where the run ends; `track.length` if absent."""
     slow: list[Slow] = Field(default_factory=list)
     """The entry with the lowest `below_kmh` above a run's speed holds for it; else `run.integrator`."""
-    coupler: couplers.Coupler | None = None
-    """To an equal vehicle behind; the track's curves then pass into each other by clothoids."""
 
 
 SETTINGS = Settings
 
 
-def derived(spec: Spec, channels: Mapping[str, str]) -> dict[str, str]:
-    """Columns of the wheel forces, and of the coupler where there is one."""
-    coupled = settings(spec, Settings).coupler is not None
-    return wheel_forces.derived(spec, channels) | (dict(couplers.UNITS) if coupled else {})
-
-
-def quantities(
-    spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
-) -> Mapping[str, pl.DataFrame]:
-    """The runs' frames with these columns."""
-    found = wheel_forces.quantities(spec, frames, vehicle)
-    coupled = _coupled(spec, vehicle)
-    if coupled is None:
-        return found
-    return {label: couplers.with_angles(frame, *coupled) for label, frame in found.items()}
+derived = wheel_forces.derived
+quantities = wheel_forces.quantities
 
 
 def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData) -> list[Drawing]:
-    """The coupler where its angle is largest."""
-    coupled = _coupled(spec, vehicle)
-    if coupled is None:
-        return []
-    return [couplers.drawing(label, frame, *coupled) for label, frame in quantities.items()]
-
-
-def _coupled(spec: Spec, vehicle: VehicleData) -> tuple[couplers.Body, couplers.Line] | None:
-    """The body at its couplers and the track's line, where the test has a coupler."""
-    coupler = settings(spec, Settings).coupler
-    if coupler is None:
-        return None
-    layout = spec.track.get("layout") or []
-    end = sum(float(part.get("length", 0.0)) for part in layout)
-    return couplers.body_of(resolved(vehicle), coupler), couplers.Line(layout, end)
+    """The couplers where their angles are largest, of runs that have `run.couplers`."""
+    return couplers.drawings(spec, quantities, vehicle)
 
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """A run for every wheel profile and speed, then the vehicle at rest."""
     own = settings(spec, Settings)
-    _coupled(spec, vehicle)  # what is wrong with it is said before anything runs
     runs = [_placed(case, own) for case in expand(spec, vehicle)]
     return [stepped(case, own.slow) for case in runs] + wheel_forces.static_cases(spec, vehicle)
 

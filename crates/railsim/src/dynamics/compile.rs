@@ -11,7 +11,7 @@ use crate::contact::profile::{Profile, ProfileKind};
 use crate::contact::search::Side;
 use crate::dynamics::model::{Contact, Gap, Link, Model, Sensor, SpeedHold, Support};
 use crate::dynamics::preload;
-use crate::equipment::coupled::{Angled, ENDS};
+use crate::equipment::coupled::{Angled, ENDS, Faces};
 use crate::equipment::train::Wagons;
 use crate::equipment::{Bogie, Equipment};
 use crate::error::{Error, Fault, KeyPath, Result};
@@ -21,7 +21,7 @@ use crate::schema::run::SimpleContact;
 use crate::schema::track::TrackSupport;
 use crate::schema::{Case, Connection, Track, Vehicle};
 use crate::track::DeviationField;
-use crate::track::Layout;
+use crate::track::{Layout, Segment};
 
 /// Compiles a case.
 ///
@@ -73,6 +73,7 @@ pub fn model(case: &Case) -> Result<Model> {
     );
     model.guided = guided(vehicle);
     model.gaps = gaps(vehicle)?;
+    model.angled = angled(case, &model)?;
     model.equipment = equipment(case, &model)?.map(Box::new);
     Ok(model)
 }
@@ -82,19 +83,6 @@ fn equipment(case: &Case, model: &Model) -> Result<Option<Equipment>> {
     let Some(drive) = &case.run.drive else { return Ok(None) };
     let vehicle = &case.vehicle;
     equipment_needed(case, drive)?;
-    let body = match &model.speed_hold {
-        Some(hold) => hold.body,
-        None => (0..model.bodies.len())
-            .max_by(|a, b| model.bodies[*a].mass.total_cmp(&model.bodies[*b].mass))
-            .ok_or_else(|| Error::input(Fault::new(KeyPath::of("vehicle.body"), "none", "a car body")))?,
-    };
-    let [front, rear] = ENDS.map(|end| {
-        let face = vehicle
-            .outline
-            .as_ref()
-            .map_or(Vec3::zeros(), |o| Vec3::new(0.5 * end * o.length_over_couplers, 0.0, -o.coupler_height));
-        face - model.bodies[body].position
-    });
     let bogies = bogies(model)?;
     let parking = vehicle.parking_brake.as_ref().map(|brake| {
         let on = vehicle.wheelsets.iter().map(|w| brake.wheelsets.contains(&w.name)).collect();
@@ -102,30 +90,48 @@ fn equipment(case: &Case, model: &Model) -> Result<Option<Equipment>> {
     });
     Ok(Some(Equipment {
         drive: drive.clone(),
-        angled: angled(case, model, &bogies)?,
         bogies,
         traction: vehicle.traction.clone(),
         dynamic_brake: vehicle.dynamic_brake,
         air_brake: vehicle.air_brake.clone(),
         parking,
         train: case.run.train.clone().map(|written| Wagons::new(written, case.run.gravity)),
-        coupler: (body, rear),
-        front,
+        faces: faces(case, model)?,
     }))
 }
 
+/// Pulling faces, on the body that the speed is held on, else on the heaviest.
+fn faces(case: &Case, model: &Model) -> Result<Faces> {
+    let body = match &model.speed_hold {
+        Some(hold) => hold.body,
+        None => (0..model.bodies.len())
+            .max_by(|a, b| model.bodies[*a].mass.total_cmp(&model.bodies[*b].mass))
+            .ok_or_else(|| Error::input(Fault::new(KeyPath::of("vehicle.body"), "none", "a car body")))?,
+    };
+    let places = ENDS.map(|end| {
+        let face =
+            case.vehicle.outline.as_ref().map_or(Vec3::zeros(), |o| {
+                Vec3::new(0.5 * end * o.length_over_couplers, 0.0, -o.coupler_height)
+            });
+        face - model.bodies[body].position
+    });
+    Ok(Faces { body, places })
+}
+
 /// Couplers at an angle between the vehicle and its neighbours.
-fn angled(case: &Case, model: &Model, bogies: &[Bogie]) -> Result<Option<Angled>> {
+fn angled(case: &Case, model: &Model) -> Result<Option<Angled>> {
     let Some(written) = &case.run.couplers else { return Ok(None) };
     let at = KeyPath::of("run.couplers");
     let Some(outline) = &case.vehicle.outline else {
         let found = "it with a vehicle without [outline]";
-        return Err(Error::input(Fault::new(at, found, "its length over couplers and coupler height there")));
+        let allowed = "a vehicle with length_over_couplers and coupler_height in its [outline]";
+        return Err(Error::input(Fault::new(at, found, allowed)));
     };
-    let places = bogies.iter().map(|b| model.bodies[b.body].position.x);
-    let (rear, front) = places.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
     let length = written.neighbour_length.unwrap_or(outline.length_over_couplers);
-    let pivots = written.neighbour_pivots.unwrap_or(front - rear);
+    let pivots = match written.neighbour_pivots {
+        Some(pivots) => pivots,
+        None => centres(model)?,
+    };
     if !(pivots > 0.0 && pivots < length) {
         let allowed = format!("above 0 and below the neighbour's length of {length} m");
         return Err(Error::input(Fault::new(at.key("neighbour_pivots"), format!("{pivots} m"), allowed)));
@@ -135,7 +141,37 @@ fn angled(case: &Case, model: &Model, bogies: &[Bogie]) -> Result<Option<Angled>
         let allowed = format!("below half the length of either vehicle, {least} m");
         return Err(Error::input(Fault::new(at.key("shank"), format!("{} m", written.shank), allowed)));
     }
-    Ok(Some(Angled { written: written.clone(), length, pivots, height: outline.coupler_height }))
+    room_ahead(case, model, 0.5 * (outline.length_over_couplers + length + pivots))?;
+    let (faces, height) = (faces(case, model)?, outline.coupler_height);
+    Ok(Some(Angled { written: written.clone(), faces, length, pivots, height }))
+}
+
+/// Distance of the bogie centres, m; of the outermost wheelsets, where there is one bogie or they hang on the car body.
+fn centres(model: &Model) -> Result<f64> {
+    let bogies = bogies(model)?;
+    let span = |places: &mut dyn Iterator<Item = f64>| {
+        let (rear, front) = places.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        front - rear
+    };
+    Ok(match bogies.len() {
+        0 | 1 => span(&mut model.wheelsets.iter().map(|w| w.body.position.x)),
+        _ => span(&mut bogies.iter().map(|b| model.bodies[b.body].position.x)),
+    })
+}
+
+/// The neighbour in front, whose first bogie is `reach` m before the vehicle's middle, stands on the layout too: behind its end the track goes straight on.
+fn room_ahead(case: &Case, model: &Model, reach: f64) -> Result<()> {
+    let layout = &case.track.layout;
+    let Some(Segment::Curve(_)) = layout.last() else { return Ok(()) };
+    let first = model.wheelsets.iter().fold(0.0_f64, |front, w| front.max(w.body.position.x));
+    let (sum, needed) = (layout.iter().map(Segment::length).sum::<f64>(), case.track.length - first + reach);
+    if sum >= needed {
+        return Ok(());
+    }
+    let found = format!("a layout that ends in a curve at {sum} m, with run.couplers");
+    let allowed =
+        format!("one of {} m or more: the neighbour in front is on it when the run ends", needed.ceil());
+    Err(Error::input(Fault::new(KeyPath::of("track.layout"), found, allowed)))
 }
 
 /// What the driver asks for must be there.

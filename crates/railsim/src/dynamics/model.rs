@@ -11,6 +11,7 @@ use crate::contact::geometry_table::GeometryTable;
 use crate::contact::textbook::Textbook;
 use crate::dynamics::state::StateMap;
 use crate::equipment::Equipment;
+use crate::equipment::coupled::Angled;
 use crate::integrator::StiffBlock;
 use crate::math::{Mat3, Vec3};
 use crate::track::DeviationField;
@@ -199,6 +200,8 @@ pub struct Model {
     pub guided: Vec<usize>,
     /// Traction, brakes and train of a run that has any.
     pub equipment: Option<Box<Equipment>>,
+    /// Couplers at an angle, where the run has any.
+    pub angled: Option<Angled>,
     pub(crate) stiff_blocks: Vec<StiffBlock>,
     memory: usize,
 }
@@ -247,6 +250,7 @@ impl Model {
             gravity,
             guided: Vec::new(),
             equipment: None,
+            angled: None,
             stiff_blocks,
             memory: map.memory,
         }

@@ -21,7 +21,7 @@ use crate::body::{Kinematics, coordinate};
 use crate::connection::RELAXATION_TIME;
 use crate::dynamics::{Model, Scratch, StateMap};
 use crate::equipment::air_brake::Pneumatics;
-use crate::equipment::coupled::{Angled, ENDS};
+use crate::equipment::coupled::Faces;
 use crate::equipment::slip::{Gains, Lag, SlipController, SlipObserver, slip};
 use crate::equipment::thermal::Motor;
 use crate::equipment::train::Wagons;
@@ -61,12 +61,8 @@ pub struct Equipment {
     pub parking: Option<(ParkingBrake, Vec<bool>)>,
     /// The train.
     pub train: Option<Wagons>,
-    /// Rear coupler's pulling face: body, and its place from the centre of mass, body axes, m.
-    pub coupler: (usize, Vec3),
-    /// The front one's place from the same centre of mass.
-    pub front: Vec3,
-    /// Couplers at an angle.
-    pub angled: Option<Angled>,
+    /// Pulling faces.
+    pub faces: Faces,
 }
 
 impl Equipment {
@@ -134,11 +130,9 @@ impl Equipment {
                 add("train.least.drawbar", Q::LeastDrawbar);
             }
         }
-        if self.angled.is_some() {
-            for (end, name) in ["front", "rear"].into_iter().enumerate() {
-                add(&format!("coupler.{name}.drawbar"), [Q::FrontDrawbar, Q::Drawbar][end]);
-                add(&format!("coupler.{name}.angle"), Q::CouplerAngle(end));
-            }
+        if model.angled.is_some() {
+            add("coupler.front.drawbar", Q::FrontDrawbar);
+            add("coupler.rear.drawbar", Q::Drawbar);
         }
         for (w, set) in model.wheelsets.iter().enumerate() {
             let name = &set.body.name;
@@ -182,8 +176,6 @@ pub enum Quantity {
     Drawbar,
     /// The same in its front coupler.
     FrontDrawbar,
-    /// Angle of the front (0) or rear (1) coupler against the car body, rad, + where it leads to the vehicle's right.
-    CouplerAngle(usize),
     /// Largest force in any coupling, N.
     LargestDrawbar,
     /// Least force in any coupling, N.
@@ -243,7 +235,7 @@ impl<'m> Acting<'m> {
         };
         let pipes =
             design.train.as_ref().filter(|t| t.written.brake_force > 0.0).map_or(Vec::new(), |train| {
-                let length = -design.coupler.1.x;
+                let length = -design.faces.places[1].x;
                 (0..train.masses.len())
                     .filter_map(|i| pneumatics(length + train.distance(i), false))
                     .collect()
@@ -317,7 +309,7 @@ impl<'m> Acting<'m> {
         let drive = &self.design.drive;
         let period = drive.period;
         let map = model.map();
-        let v = x[map.u(self.design.coupler.0).start];
+        let v = x[map.u(self.design.faces.body).start];
         self.heat(model, t);
         let (traction, braking) = self.references(t, v);
         self.slip_control(model, map, t, x, v, traction - braking);
@@ -485,7 +477,7 @@ impl<'m> Acting<'m> {
         if !self.design.drive.resistance {
             return;
         }
-        let body = self.design.coupler.0;
+        let body = self.design.faces.body;
         let k: &Kinematics = &scratch.kinematics[body];
         let (mass, v) = (model.mass(), k.v_T.x);
         let curvature = k.frame.k_T.z;
@@ -503,13 +495,13 @@ impl<'m> Acting<'m> {
     /// Body whose speed is the vehicle's.
     #[must_use]
     pub fn body(&self) -> usize {
-        self.design.coupler.0
+        self.design.faces.body
     }
 
     /// The rear coupler from that body's centre of mass, body axes, m.
     #[must_use]
     pub fn coupler(&self) -> &Vec3 {
-        &self.design.coupler.1
+        &self.design.faces.places[1]
     }
 
     /// A recorded number, at the last evaluation.
@@ -542,7 +534,6 @@ impl<'m> Acting<'m> {
             Q::BrakeEffort => self.brake_effort,
             Q::Drawbar => self.drawbars[1],
             Q::FrontDrawbar => self.drawbars[0],
-            Q::CouplerAngle(end) => self.coupler_angle(ENDS[end], model, x, scratch),
             Q::LargestDrawbar => self.drawbar_of(model, x, scratch, f64::max),
             Q::LeastDrawbar => self.drawbar_of(model, x, scratch, f64::min),
             Q::RearSpeed => x[x.len() - train::WAGON + 1],

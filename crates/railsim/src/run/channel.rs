@@ -18,7 +18,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 71] = [
+const PARTS: [(&str, &str, &str); 72] = [
     ("Fx", "N", "longitudinal creep force on the wheel, + forward"),
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force on the flange, all contacts there"),
@@ -28,7 +28,6 @@ const PARTS: [(&str, &str, &str); 71] = [
     ("Q", "N", "vertical wheel force, + presses on the rail"),
     ("Y", "N", "lateral wheel force on the rail, + outward"),
     ("adhesion", "1", "longitudinal creep force over the load of the same wheels, + forward"),
-    ("angle", "rad", "coupler in plan against the car body, + where it leads to the vehicle's right"),
     ("ax", "m/s2", "acceleration along the body's x axis, without gravity"),
     ("ay", "m/s2", "acceleration along the body's y axis (right), without gravity"),
     ("az", "m/s2", "acceleration along the body's z axis (down), without gravity"),
@@ -62,6 +61,7 @@ const PARTS: [(&str, &str, &str); 71] = [
     ("notch", "1", "notch of the traction controller"),
     ("phi", "rad", "roll against the track frame"),
     ("pipe", "Pa", "pressure in the brake pipe, gauge"),
+    ("pitch", "rad", "coupler against the car body, up and down, + where it leads up"),
     ("psi", "rad", "yaw against the track frame, + nose right"),
     ("reaction", "N", "force that holds the displaced coordinate where it is"),
     ("reaction_moment", "N m", "moment that holds the displaced coordinate where it is"),
@@ -97,6 +97,7 @@ const PARTS: [(&str, &str, &str); 71] = [
     ("vertical", "m", "irregularity: vertical deviation of the centre line, + down"),
     ("x", "m", "place along the track relative to the vehicle's place"),
     ("y", "m", "lateral displacement from the track centre line, + right"),
+    ("yaw", "rad", "coupler against the car body, sideways, + where it leads to the vehicle's right"),
     ("z", "m", "height: depth below the top of rail, negative above"),
 ];
 
@@ -129,6 +130,8 @@ pub(crate) enum Source {
     Wheel(usize, usize, WheelQuantity),
     SumLV(usize),
     SumY(usize),
+    /// Front (0) or rear (1), sideways (0) or up and down (1).
+    CouplerAngle(usize, usize),
     Equipment(Quantity),
 }
 
@@ -222,6 +225,13 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
             ];
             for (part, quantity) in common.iter().chain(&of_profiles) {
                 plan.push((format!("{name}.{label}.{part}"), Source::Wheel(w, side, *quantity)));
+            }
+        }
+    }
+    if model.angled.is_some() {
+        for (end, name) in ["front", "rear"].into_iter().enumerate() {
+            for (plane, part) in ["yaw", "pitch"].into_iter().enumerate() {
+                plan.push((format!("coupler.{name}.{part}"), Source::CouplerAngle(end, plane)));
             }
         }
     }

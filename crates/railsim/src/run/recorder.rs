@@ -97,6 +97,10 @@ pub(crate) fn value(
             let [left, right] = &scratch.wheels[w];
             right.Y - left.Y
         }
+        Source::CouplerAngle(end, plane) => model.angled.as_ref().map_or(f64::NAN, |angled| {
+            let body = angled.faces.body;
+            angled.angles(&model.layout, &scratch.kinematics[body], x[map.q(body).start], end)[plane]
+        }),
         Source::Equipment(quantity) => {
             system.acting.as_ref().map_or(f64::NAN, |acting| acting.value(quantity, model, t, x, scratch))
         }

@@ -84,7 +84,7 @@ pub fn simulate_controlled(case: &Case, control: &dyn Control, outside: &mut Out
 }
 
 fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) -> Result<Outcome> {
-    let model = compile::model(case)?;
+    let mut model = compile::model(case)?;
     let integrator = &case.run.integrator;
     let h = integrator.step();
     let every = (case.run.output_step / h).round().max(1.0) as usize;
@@ -98,6 +98,9 @@ fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) ->
     smooth_start(&model, start)?;
 
     let mut x = equilibrium::solve(&model, start, speed)?;
+    if let Some(angled) = &mut model.angled {
+        angled.level_with(&x[map.q(angled.faces.body)]);
+    }
     let program = SpeedProgram { s: equilibrium::reference_s(&model, start), speed, acceleration: 0.0 };
     let mut system = VehicleSystem::new(&model, program);
     let mut dx = vec![0.0; map.size()];

@@ -298,7 +298,8 @@ pub struct TrainLocomotive {
 }
 
 /// Couplers that stand at an angle to the car body. Each lies in the line between its pivot and that of a neighbour, whose bogie centres
-/// stand on the track's centre line.
+/// stand on the track's centre line and whose couplers are as high as the vehicle's own. Recorded in every run in time; forces need `run.drive`.
+/// What the neighbours are is said here alone, the same at both ends: `run.train` hangs its masses where their lengths put them.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Couplers {
@@ -309,7 +310,7 @@ pub struct Couplers {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
     pub neighbour_length: Option<f64>,
-    /// Distance of the neighbours' bogie centres, m; the vehicle's own if absent.
+    /// Distance of the neighbours' bogie centres, m; the vehicle's own (its wheelbase, without bogies) if absent.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "m"))]
     pub neighbour_pivots: Option<f64>,

@@ -114,7 +114,7 @@ pub struct Run {
     /// `time`: what the vehicle is coupled to.
     #[serde(default)]
     pub train: Option<Train>,
-    /// `time`: couplers at an angle, with their lateral forces. Without it what the train pulls with is along the track.
+    /// `time`: couplers at an angle: which, and with `drive` their lateral forces. Without it what the train pulls with is along the track.
     #[serde(default)]
     pub couplers: Option<Couplers>,
 }

@@ -24,6 +24,9 @@ const OWNED: [(&str, &[RunKind]); 11] = [
 /// Speeds that a search looks at, at most; more is a slip of the pen.
 const MOST_SPEEDS: f64 = 1000.0;
 
+/// What is said of a key that only a driven run has a use for.
+const BESIDE_DRIVE: &str = "this key beside run.drive";
+
 /// Every fault of relation; those of structure are said elsewhere.
 pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
     // A key that is missing or out of range is said by the structural check, and there is no telling the rest.
@@ -75,10 +78,16 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
 
 /// What holds between `drive`, `train` and the rest.
 fn drive(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
+    faults.extend(run.couplers.iter().flat_map(|couplers| couplers.faults(&node.at.key("couplers"))));
     let Some(drive) = &run.drive else {
-        for (key, there) in [("train", run.train.is_some()), ("couplers", run.couplers.is_some())] {
-            if there {
-                at(node, key, "this key beside run.drive", faults);
+        if run.train.is_some() {
+            at(node, "train", BESIDE_DRIVE, faults);
+        }
+        if let (Some(table), Some(couplers)) = (node.get("couplers"), &run.couplers) {
+            for (key, forces) in [("front", &couplers.front), ("rear", &couplers.rear)] {
+                if !forces.is_empty() {
+                    at(table, key, BESIDE_DRIVE, faults);
+                }
             }
         }
         if run.kind == RunKind::AirBrake {
@@ -89,7 +98,6 @@ fn drive(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
     let Some(table) = node.get("drive") else { return };
     faults.extend(drive.faults(&table.at));
     faults.extend(run.train.iter().flat_map(|train| train.faults(&node.at.key("train"))));
-    faults.extend(run.couplers.iter().flat_map(|couplers| couplers.faults(&node.at.key("couplers"))));
     if run.kind == RunKind::AirBrake {
         needs(node, "output_step", "a number > 0 s", faults);
         if drive.until.time.is_none() {

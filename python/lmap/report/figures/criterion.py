@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from lmap.criteria import Stage, trace
+from lmap.criteria import Stage, is_constant, trace
 from lmap.errors import JudgementProblem
 from lmap.report import words
 from lmap.report.figures.envelope import Array
@@ -88,7 +88,7 @@ def _views(verdict: CriterionVerdict, case: CaseResult | None) -> list[View]:
         ]
     if not verdict.signals:
         return [View(verdict.case, WHOLE, (_axis(verdict),), message=verdict.message or "no signal is read")]
-    if samples(case).height == 1:
+    if verdict.value is not None and all(is_constant(samples(case), name) for name in verdict.signals):
         return []  # a number is no curve
     try:
         return _judged(verdict, case)
