@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from typing import Any
 
 Schema = Mapping[str, Any]
@@ -22,32 +23,70 @@ reference as `"$group.key"` or `"-$group.key"` may stand.
 def page(schema: Schema) -> str:
     """The reference page of a vehicle file."""
     definitions: Schema = schema.get("$defs", {})
-    lines = [HEAD, "## Top of the file\n", *_table(schema, definitions)]
+    lines = [HEAD, "## Top of the file\n", *table(schema, definitions)]
     for name in ("WrittenBody", "WrittenWheelset", "WrittenConnection"):
         part = definitions[name]
         key = name.removeprefix("Written").lower()
-        lines += [f"\n## `[[{key}]]`\n", _meaning(part), "", *_table(part, definitions)]
+        lines += [f"\n## `[[{key}]]`\n", _meaning(part), "", *table(part, definitions)]
     for title, law in _kinds(definitions["WrittenConnection"], definitions):
-        lines += [f'\n### `kind = "{title}"`\n', _meaning(law), "", *_table(law, definitions)]
-    shown = {"WrittenBody", "WrittenWheelset", "WrittenConnection"}
-    rest = [name for name in definitions if name not in shown and _is_table(definitions[name])]
+        lines += [f"\n### `{title}`\n", _meaning(law), "", *table(law, definitions)]
     laws = {_reference(law) for law in definitions["WrittenConnection"].get("oneOf", [])}
-    for name in sorted(rest):
-        part = definitions[name]
-        if name in laws or name == "Law":
-            continue
-        lines += [f"\n## {_title(name)}\n", _meaning(part), ""]
-        if "oneOf" in part:
-            for title, own in _kinds(part, definitions):
-                lines += [
-                    f'\n### {_title(name)}, `kind = "{title}"`\n',
-                    _meaning(own),
-                    "",
-                    *_table(own, definitions),
-                ]
-        else:
-            lines += _table(part, definitions)
+    lines += _others(definitions, {"WrittenBody", "WrittenWheelset", "WrittenConnection", "Law", *laws})
+    return joined(lines)
+
+
+CASE_HEAD = """# The tables `[track]` and `[run]` of a case
+
+Made by `lmap schema case --markdown` from the schema that a case is checked against. A spec writes the same keys; what
+it writes in its own way stands in `docs/reference/spec.md`. `docs/concepts/analyses.md` says which keys of `[run]` go
+with which kind of run. SI units, axes x forward, y right, z down.
+"""
+
+
+def case_page(schemas: Mapping[str, Schema]) -> str:
+    """The reference page of a case's tables, of their schemas by name."""
+    lines = [CASE_HEAD]
+    for name, schema in schemas.items():
+        lines += [f"\n## `[{name}]`\n", *table(schema, schema.get("$defs", {}))]
+    definitions = {key: part for schema in schemas.values() for key, part in schema.get("$defs", {}).items()}
+    return joined([*lines, *_others(definitions, set())])
+
+
+CHANNELS_HEAD = """# Channels
+
+Made by `lmap schema channels --markdown` from the table that runs take units and meanings from. A name is a place and
+one of these parts, `ws3.left.Q`, or the part alone, `t`. `lmap channels VEHICLE` lists those that a vehicle's run
+records.
+
+| part | unit | meaning |
+|---|---|---|
+"""
+
+
+def channels_page(parts: Sequence[tuple[str, str, str]]) -> str:
+    """The reference page of channels, of the parts of their names with unit and meaning."""
+    rows = [f"| `{part}` | {unit} | {_escaped(meaning)} |" for part, unit, meaning in parts]
+    return CHANNELS_HEAD + "\n".join(rows) + "\n"
+
+
+def joined(lines: Iterable[str]) -> str:
+    """A page of its lines."""
     return "\n".join(lines).replace("\n\n\n", "\n\n").rstrip() + "\n"
+
+
+def _others(definitions: Schema, shown: AbstractSet[str]) -> Iterator[str]:
+    """All tables but those that are shown already, sorted by name."""
+    for name in sorted(definitions):
+        part = definitions[name]
+        if name in shown or not _is_table(part):
+            continue
+        yield from (f"\n## {_title(name)}\n", _meaning(part), "")
+        if "oneOf" not in part:
+            yield from table(part, definitions)
+            continue
+        for title, own in _kinds(part, definitions):
+            yield from (f"\n### {_title(name)}, `{title}`\n", _meaning(own), "")
+            yield from table(own, definitions)
 
 
 def _title(name: str) -> str:
@@ -67,16 +106,16 @@ def _reference(part: Schema) -> str:
 
 
 def _kinds(part: Schema, definitions: Schema) -> Iterator[tuple[str, Schema]]:
-    """The alternatives of a tagged table: the word of the tag, and what belongs to it."""
+    """The alternatives of a tagged table: the tag as it is written, `kind = "friction"`, and what belongs to it."""
     for own in part.get("oneOf", []):
-        word = own["properties"]["kind"]["const"]
+        tag = next(key for key in ("kind", "method") if key in own["properties"])
         law = definitions.get(_reference(own), {})
-        keys = {key: value for key, value in own["properties"].items() if key != "kind"} | law.get(
+        keys = {key: value for key, value in own["properties"].items() if key != tag} | law.get(
             "properties", {}
         )
         required = [*own.get("required", []), *law.get("required", [])]
         yield (
-            word,
+            f'{tag} = "{own["properties"][tag]["const"]}"',
             {
                 "description": own.get("description") or law.get("description", ""),
                 "properties": keys,
@@ -85,7 +124,8 @@ def _kinds(part: Schema, definitions: Schema) -> Iterator[tuple[str, Schema]]:
         )
 
 
-def _table(part: Schema, definitions: Schema) -> list[str]:
+def table(part: Schema, definitions: Schema) -> list[str]:
+    """The keys of a table, those that are needed first."""
     keys: Schema = part.get("properties", {})
     if not keys:
         return []
@@ -110,7 +150,11 @@ def _default(value: Any) -> str:
 
 
 def _meaning(part: Schema) -> str:
-    return " ".join(str(part.get("description", "")).split()).replace("|", "\\|")
+    return _escaped(str(part.get("description", "")))
+
+
+def _escaped(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
 
 
 _BOUNDS = (("exclusiveMinimum", ">"), ("minimum", ">="), ("exclusiveMaximum", "<"), ("maximum", "<="))

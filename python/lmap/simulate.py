@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -86,6 +87,18 @@ def track_extremes(case: Case) -> dict[str, tuple[float, float]]:
     except railsim.RailsimError as error:
         raise SimulationProblem(str(error)) from None
     return {name: (float(least), float(most)) for name, (least, most) in extremes.items()}
+
+
+def case_schema() -> dict[str, Any]:
+    """JSON schemas of a case's tables `track` and `run`, by name."""
+    found: dict[str, Any] = json.loads(toml.core().case_schema())
+    return found
+
+
+def channel_parts() -> list[tuple[str, str, str]]:
+    """Last part of the name, unit and meaning of every channel that a case may have."""
+    parts: list[tuple[str, str, str]] = toml.core().channel_parts()
+    return parts
 
 
 def core_version() -> str:

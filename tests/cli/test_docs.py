@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 import typer
-from commands import ROOT
+from commands import ROOT, Ran
 
 from lmap.check import find_specs
 from lmap.cli.app import app
+from lmap.cli.schema import Kind
 from lmap.prepare import prepare
+from lmap.procedures import BY_NAME as PROCEDURES
+from lmap.signals import BY_NAME as LINKS
 from lmap.spec import overrides
 from lmap.sweep import variation
 
@@ -99,3 +104,29 @@ def test_printed_python_runs(where: str, block: str) -> None:
         assert block.rstrip().endswith("})")
         block = block.rstrip()[:-1] + f", set={short})"
     exec(compile(block, where, "exec"), {})
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_a_reference_page_is_what_the_code_says_and_says_what_every_key_is(
+    kind: Kind, lmap: Callable[..., Ran]
+) -> None:
+    asked = ("schema", str(kind), "--markdown")
+    page = (ROOT / "docs" / "reference" / f"{kind}.md").read_text(encoding="utf-8")
+    assert lmap(*asked).out == page, f"lmap {' '.join(asked)} > docs/reference/{kind}.md"
+    rows = re.findall(r"^\| `([^`]+)` \| (.*) \| (.*) \|$", page, re.MULTILINE)
+    assert len(rows) > 40
+    assert not [key for key, _, meaning in rows if len(meaning) < 4]
+    json.loads(lmap("schema", str(kind)).out)
+
+
+def test_the_reference_has_every_link_procedure_and_key_of_the_run() -> None:
+    """Read off the registries again, not off what made the pages."""
+    spec, case = (
+        (ROOT / "docs" / "reference" / f"{kind}.md").read_text(encoding="utf-8") for kind in ("spec", "case")
+    )
+    assert set(re.findall(r"^### `(\w+)`", spec, re.MULTILINE)) == {*LINKS, *PROCEDURES}
+    run = case.partition("## `[run]`")[2].partition("\n## ")[0]
+    allowed = "contact, couplers, creep, disturbance, drive, friction, integrator, output_step, speed, train"
+    assert set(re.findall(r"^\| `(\w+)`", run, re.MULTILINE)) >= set(allowed.split(", "))
+    signals = (ROOT / "docs" / "concepts" / "signals.md").read_text(encoding="utf-8")
+    assert not [name for name in LINKS if f"`{name}`" not in signals]

@@ -251,16 +251,12 @@ def test_a_bad_include(written: str, found: str, place: Path, lmap: Run) -> None
     assert found in message
 
 
-def test_the_schema_is_one_and_the_reference_page_is_its(lmap: Run) -> None:
+def test_the_schema_is_one_and_says_what_every_key_means(lmap: Run) -> None:
     code, out, _ = lmap("schema", "vehicle")
     assert code == 0
     schema = json.loads(out)
     assert schema["type"] == "object"
     assert "include" in schema["properties"]
-    code, out, _ = lmap("schema", "vehicle", "--markdown")
-    page = (ROOT / "docs/reference/vehicle.md").read_text(encoding="utf-8")
-    assert out == page, "lmap schema vehicle --markdown > docs/reference/vehicle.md"
-    # every key says what it means
     for name, part in {"": schema, **schema["$defs"]}.items():
         for key, own in part.get("properties", {}).items():
             assert own.get("description") or "const" in own, f"{name}.{key}"

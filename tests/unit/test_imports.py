@@ -26,7 +26,7 @@ TIERS: tuple[tuple[str, ...], ...] = (
     ("simulate", "contact", "controller", "execute"),
     ("analyse",),
     ("vehicle",),
-    ("lint",),
+    ("lint", "spec_reference"),
     ("report",),
     ("prepare",),
     ("judge",),

@@ -6,9 +6,11 @@ from typing import Annotated
 
 import typer
 
+from lmap.cli.options import VehicleName
+
 
 def channels(
-    vehicle: Annotated[str, typer.Argument(metavar="VEHICLE", help="A vehicle that ships, or a file.")],
+    vehicle: VehicleName,
     as_json: Annotated[bool, typer.Option("--json", help="A JSON list on stdout.")] = False,
 ) -> None:
     """List the channels of a vehicle with unit and meaning.

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lmap.cli.options import Jobs, Quiet
+
 if TYPE_CHECKING:
     from lmap.verdict import Acceptance
 
@@ -31,13 +33,11 @@ def check(
             help="Override a key of the spec (run.speed_kmh=130) or a named parameter of the vehicle.",
         ),
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Threads; default: all processors.")
-    ] = None,
+    jobs: Jobs = None,
     no_cache: Annotated[
         bool, typer.Option("--no-cache", help="Run everything, keep nothing for the next check.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Simulate and judge specs: a table of criteria with value, limit and margin.
 

@@ -6,19 +6,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lmap.cli.options import Condition, Parameters, VehicleName
+
 if TYPE_CHECKING:
     from lmap.lint import Finding
 
 
 def lint(
-    vehicle: Annotated[str, typer.Argument(metavar="VEHICLE", help="A vehicle that ships, or a file.")],
-    condition: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Operating condition; default: the design condition.")
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Override a named parameter of the vehicle."),
-    ] = None,
+    vehicle: VehicleName,
+    condition: Condition = None,
+    settings: Parameters = None,
     select: Annotated[
         list[str] | None, typer.Option(metavar="CODES", help="Tell these only, as LM4,LM701.")
     ] = None,

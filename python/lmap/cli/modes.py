@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lmap.cli.options import Condition, Parameters, VehicleName
+
 if TYPE_CHECKING:
     import polars as pl
 
@@ -23,7 +25,7 @@ MOVES = 0.3
 
 
 def modes(
-    vehicle: Annotated[str, typer.Argument(metavar="VEHICLE", help="A vehicle that ships, or a file.")],
+    vehicle: VehicleName,
     speed_kmh: Annotated[
         str | None,
         typer.Option(
@@ -33,13 +35,8 @@ def modes(
             "speed; with --out a root locus to twice the design speed.",
         ),
     ] = None,
-    condition: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Operating condition; default: the design condition.")
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Override a named parameter of the vehicle."),
-    ] = None,
+    condition: Condition = None,
+    settings: Parameters = None,
     friction: Annotated[float, typer.Option(metavar="MU", help="Between wheel and rail.")] = 0.4,
     below_hz: Annotated[
         float, typer.Option("--below-hz", metavar="HZ", help="The table shows modes up to this frequency.")

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from lmap.cli.options import Quiet
+
 
 def run(
     case: Annotated[
@@ -19,7 +21,7 @@ def run(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Default: CASE with .parquet, here.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run one case and write its channels to a parquet file.
 

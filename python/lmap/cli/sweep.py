@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from lmap.cli.options import Jobs, Quiet
+
 
 def sweep(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="A file, or a test that ships: name or id.")],
@@ -26,13 +28,11 @@ def sweep(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a key for all variants.")
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Threads; default: all processors.")
-    ] = None,
+    jobs: Jobs = None,
     no_cache: Annotated[
         bool, typer.Option("--no-cache", help="Run everything, keep nothing for the next sweep.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Judge a spec for every combination of values: sweep.parquet, one row for each variant, criterion and case.
 

@@ -7,23 +7,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lmap.cli.options import Condition, Parameters, VehicleName
+
 if TYPE_CHECKING:
     from lmap.vehicle import Vehicle
     from lmap.view.model import Model
 
 
 def view(
-    vehicle: Annotated[str, typer.Argument(metavar="VEHICLE", help="A vehicle that ships, or a file.")],
+    vehicle: VehicleName,
     out: Annotated[
         Path, typer.Option("--out", metavar="DIR", help="Folder of the page; default: the working folder.")
     ] = Path(),
-    condition: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Operating condition; default: the design condition.")
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Override a named parameter of the vehicle."),
-    ] = None,
+    condition: Condition = None,
+    settings: Parameters = None,
     speed_kmh: Annotated[
         str | None,
         typer.Option(

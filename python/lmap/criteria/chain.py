@@ -66,20 +66,29 @@ class Criterion(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     name: str = Field(min_length=1)
+    """What tables and pages call it; no two of a spec alike."""
     signal: Annotated[list[str], BeforeValidator(_listed_names)] = Field(min_length=1)
+    """A channel, a pattern of channels (`ws*.left.LV`), or a list of these; the worst of them is judged."""
     chain: list[dict[str, dict[str, Any]]] = Field(min_length=1)
+    """Filters, then one statistic, as `{ lowpass = { cutoff_hz = 10.0 } }`."""
     case: Annotated[list[str] | None, BeforeValidator(_listed_names)] = Field(default=None, min_length=1)
     """Labels, or patterns of them, of the cases that it is judged in, all without it; `!` before one leaves out."""
     needs: str | None = None
     """Dotted key of the vehicle's file without which there are no data to judge: then it is not assessed."""
     unit: str
+    """Of the value and its limit; `1` for a ratio."""
     max_abs: FiniteFloat | None = Field(default=None, ge=0.0)
+    """Largest size allowed; without any limit the value is shown, not judged."""
     max: FiniteFloat | None = None
+    """Largest value allowed."""
     min: FiniteFloat | None = None
+    """Least value allowed."""
     strict: bool = False
     """Whether reaching the limit fails."""
     source: str = Field(min_length=1)
+    """Where the limit is from; `assumed` where no public source gives it."""
     reason: str | None = None
+    """Why an assumed limit is what it is."""
     published: Annotated[dict[str, FiniteFloat], BeforeValidator(_by_label)] = Field(default_factory=dict)
     """Printed by the source: one figure for all cases (key ""), or one by case label."""
 

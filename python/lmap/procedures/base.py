@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from lmap.errors import InputProblem, KeyPath, Problem, problems_of_validation
 from lmap.spec.case import Case, VehicleData, build
@@ -95,6 +95,12 @@ class Illustrated(Procedure, Protocol):
         self, spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData
     ) -> list[Drawing]:
         """Plots for the report, of what `quantities` gave."""
+
+
+class Table(BaseModel):
+    """A table of `[test]`: no unknown key, no text for a number."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 def settings(spec: Spec, kind: type[_Settings]) -> _Settings:

@@ -44,6 +44,7 @@ class Stepped(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     label: str = Field(min_length=1)
+    """Of its case."""
     way: Literal["draft", "buff"] | None = None
     """Which way the force of `[test]` acts in both couplers; without it they have what `run.train` gives."""
     run: dict[str, Any] = Field(default_factory=dict)
@@ -72,6 +73,7 @@ class Settings(BaseModel):
     build_up_s: float = Field(default=5.0, gt=0.0, allow_inf_nan=False)
     """Time in which the force of `[test]` grows to its whole in a run in time."""
     stepped: list[Stepped] = Field(default_factory=list)
+    """Runs in time."""
 
     @model_validator(mode="after")
     def _something_to_do(self) -> Self:

@@ -37,6 +37,7 @@ class Beside(BaseModel):
     speed_kmh: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
     """Speed at which it begins, km/h."""
     integrator: dict[str, Any] | None = None
+    """As `run.integrator`."""
     search: dict[str, Any]
     """As `run.search`."""
 
@@ -47,6 +48,7 @@ class Settings(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     beside: dict[str, Beside] = Field(default_factory=dict)
+    """Other searches, by the names that they are shown under."""
 
 
 SETTINGS = Settings

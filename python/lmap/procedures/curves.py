@@ -11,13 +11,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from lmap.criteria.units import STANDARD_GRAVITY
 from lmap.errors import InputProblem, Problem
 from lmap.formulas import CANT_BASE
 from lmap.procedures import wheel_forces
-from lmap.procedures.base import CaseFigures, expand, settings
+from lmap.procedures.base import CaseFigures, Table, expand, settings
 from lmap.procedures.speed_range import Slow, stepped
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import RunPart, Spec
@@ -28,11 +28,7 @@ SUMMARY = "one run through each curve of a list, at its speed or its unbalanced 
 UNITS: Mapping[str, str] = {}
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-class Curve(_Table):
+class Curve(Table):
     """One curve and how fast it is run."""
 
     radius_m: float = Field(allow_inf_nan=False)
@@ -42,6 +38,7 @@ class Curve(_Table):
     unbalanced: float | None = Field(default=None, allow_inf_nan=False)
     """m/s2 in the plane of the rails, + outward: V2/R cos c - g sin c. This or `speed_kmh`."""
     speed_kmh: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
+    """This or `unbalanced`."""
     label: str | None = Field(default=None, min_length=1)
     """Of its case; radius, cant and speed if absent."""
 
@@ -67,6 +64,7 @@ class Settings(wheel_forces.Settings):
     """`[test]`."""
 
     curves: list[Curve] = Field(min_length=1)
+    """One case each."""
     straight_m: float = Field(gt=0.0, allow_inf_nan=False)
     """Straight track before the curve."""
     transition_m: float = Field(gt=0.0, allow_inf_nan=False)

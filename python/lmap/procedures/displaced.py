@@ -31,11 +31,17 @@ class Outline(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: str
+    """As specs call it."""
     title: str
+    """One line for people."""
     source: str
+    """Where it is from; `assumed` where no public source gives it."""
     reason: str | None = None
+    """Why it is as it is, where it is assumed."""
     static: Half
+    """Of a standing vehicle: points (m from the middle, m above rail) of one half, upwards."""
     kinematic: Half
+    """Of a vehicle that leans and moves, likewise."""
 
 
 class LoadCase(BaseModel):
@@ -44,6 +50,7 @@ class LoadCase(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     label: str = Field(min_length=1)
+    """Of its case."""
     condition: str | None = None
     """The spec's own where none is given."""
     wheel_wear: float = Field(default=0.0, ge=0.0, le=0.2)

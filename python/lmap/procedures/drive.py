@@ -48,6 +48,7 @@ class Variant(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     label: str = Field(min_length=1)
+    """Of its case."""
     speed_kmh: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     """Initial speed instead of the spec's."""
     run: dict[str, Any] = Field(default_factory=dict)
@@ -64,6 +65,7 @@ class Settings(BaseModel):
     kind: str = Field(default="time", pattern="^(time|air_brake)$")
     """`air_brake` tests the air brake by itself, nothing moving."""
     case: list[Variant] = Field(min_length=1)
+    """The runs."""
 
 
 SETTINGS = Settings

@@ -46,6 +46,7 @@ class Settings(BaseModel):
     outline: Outline
     """By name in a spec: models/outlines."""
     load_case: list[LoadCase] = Field(min_length=1)
+    """The states of the vehicle."""
 
 
 SETTINGS = Settings

@@ -38,11 +38,11 @@ class Settings(BaseModel):
     dip_angle: float = Field(gt=0.0, lt=0.2)
     """Whole angle 2 alpha between the rail ends, rad."""
     track_mass: float = Field(gt=0.0)
-    """kg."""
+    """Effective mass of the track under one rail, kg."""
     track_stiffness: float = Field(gt=0.0)
-    """N/m."""
+    """Its stiffness, N/m."""
     track_damping: float = Field(ge=0.0)
-    """N s/m."""
+    """Its damping, N s/m."""
     motor_mass_per_wheel: float = Field(default=0.0, ge=0.0)
     """Unsprung mass beside half the wheelset, e.g. of a nose-suspended motor, kg."""
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from lmap.errors import InputProblem, Problem
 from lmap.procedures import couplers, wheel_forces
-from lmap.procedures.base import CaseFigures, expand, settings
+from lmap.procedures.base import CaseFigures, Table, expand, settings
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, Fact
@@ -27,11 +27,7 @@ SUMMARY = "one run for each speed over irregularities, on straight track or in a
 UNITS: Mapping[str, str] = {}
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-class Place(_Table):
+class Place(Table):
     """A place on the track that moves with the speed."""
 
     at_m: float = Field(allow_inf_nan=False)
@@ -40,10 +36,11 @@ class Place(_Table):
     """s of travel before (of a start) or after it (of an end)."""
 
 
-class Slow(_Table):
+class Slow(Table):
     """What runs below a speed are stepped with: the damping of creep is inversely proportional to the speed."""
 
     below_kmh: float = Field(gt=0.0, allow_inf_nan=False)
+    """It holds below this speed."""
     integrator: dict[str, Any]
     """In place of `run.integrator`; checked by the core."""
 

@@ -54,9 +54,11 @@ class Settings(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     where: Literal["rig", "curve", "standing"]
+    """On the cant test rig, running in a curve, or standing on cant."""
     outline: Outline
     """By name in a spec: models/outlines."""
     load_case: list[LoadCase] = Field(min_length=1)
+    """The states of the vehicle."""
     cant_mm: float = Field(default=0.0, ge=0.0, le=300.0)
     """Rig and standing: the largest."""
     step_mm: float = Field(default=10.0, gt=0.0)

@@ -52,6 +52,7 @@ class Settings(BaseModel):
     twist_bogie: Literal["EN 14363"] | float
     """Within the bogie's outer wheelbase; EN 14363: 7 - 5/2a per mille."""
     loops: list[Loop] = Field(min_length=1)
+    """What is twisted, a case each."""
     steps: int = Field(ge=1, le=50)
     """From level track to the prescribed twist."""
     beyond: float = Field(gt=0.0, le=1.0)

@@ -20,11 +20,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from lmap.errors import JudgementProblem
 from lmap.formulas import nadal_limit, prudhomme_limit
-from lmap.procedures.base import unloading_units, wheelsets, with_unloading
+from lmap.procedures.base import Table, unloading_units, wheelsets, with_unloading
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
 from lmap.view.model import resolved
@@ -33,10 +33,8 @@ if TYPE_CHECKING:
     import polars as pl
 
 
-class Settings(BaseModel):
+class Settings(Table):
     """Keys of `[test]` that every procedure with these columns has."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     prudhomme_factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
     """K of Prud'homme's limit: 1.0 for locomotives and passenger vehicles, 0.85 for wagons (UIC 518, EN 14363)."""

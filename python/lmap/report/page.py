@@ -12,7 +12,6 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +21,9 @@ from lmap.report.document import dumps, to_json
 from lmap.report.junit import junit
 from lmap.report.numbers import NOTHING, given, number, percent, quantity, signed, with_unit
 from lmap.report.parquet import write_parquet
+from lmap.report.rendering import pieces, script_json
 from lmap.report.scene import file_name, render_scene
-from lmap.report.sheet import plotly_js, script_json
 from lmap.verdict import Acceptance, CaseResult, CriterionVerdict, SpecVerdict
-
-_PLOTLY = "<script>/* plotly.js */</script>"
-"""Where the template wants the library; no text from a file can look so, its `<` being escaped."""
 
 _FEW = 6
 """Tests on a page whose curves are drawn in full detail."""
@@ -68,29 +64,8 @@ def _write_page(acceptance: Acceptance, file: Path) -> None:
 
 def _parts(acceptance: Acceptance) -> Iterator[bytes]:
     """The page piece by piece, so that it is never in memory as a whole."""
-    # Only here: what `lmap --help` does not need is not imported for it.
-    from jinja2 import Environment, StrictUndefined
-    from markupsafe import Markup
-
-    templates = resources.files("lmap.report") / "templates"
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    template = environment.from_string((templates / "index.html.j2").read_text(encoding="utf-8"))
-    pieces = template.generate(
-        page=_page(acceptance),
-        style=Markup((templates / "style.css").read_text(encoding="utf-8")),
-        script=Markup((templates / "page.js").read_text(encoding="utf-8")),
-    )
-    # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
-    for piece in pieces:
-        before, library, after = piece.partition(_PLOTLY)
-        yield before.encode()
-        if library:
-            yield b"<script>"
-            yield plotly_js()
-            yield b"</script>"
-            yield after.encode()
+    as_they_are = {"style": "style.css", "script": "page.js"}
+    return pieces("index.html.j2", files=as_they_are, page=_page(acceptance))
 
 
 def _drawings(acceptance: Acceptance) -> list[tuple[SpecVerdict, str]]:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import base64
 import html
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from importlib import resources
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-_PLOTLY = "<script>/* plotly.js */</script>"
-"""Where the template wants the library; no text from a file can look so, its `<` being escaped."""
+from lmap.report.rendering import pieces, script_json
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,42 +89,9 @@ class Sheet:
 
 def render(sheet: Sheet) -> bytes:
     """The page, in UTF-8."""
-    # Only here: what `lmap --help` does not need is not imported for it.
-    from jinja2 import Environment, StrictUndefined
-    from markupsafe import Markup
-
-    templates = resources.files("lmap.report") / "templates"
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    template = environment.from_string((templates / "sheet.html.j2").read_text(encoding="utf-8"))
-    page = template.render(
-        page=sheet,
-        figures=[_figure(*figure) for figure in sheet.figures],
-        style=Markup((templates / "style.css").read_text(encoding="utf-8")),
-        script=Markup((templates / "page.js").read_text(encoding="utf-8")),
-    )
-    # plotly.js goes in as bytes: as text, with the few wide characters in it, it would take 20 MB per copy.
-    before, place, after = page.partition(_PLOTLY)
-    if not place:
-        raise ValueError(f"the page's template has no {_PLOTLY}")
-    return b"".join((before.encode(), b"<script>", plotly_js(), b"</script>", after.encode()))
-
-
-def script_json(value: Any) -> Any:
-    """JSON that may stand in a script element: nothing in it can end the element or open a comment."""
-    from markupsafe import Markup
-
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    for character in "<>&\u2028\u2029":
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    return Markup(text)
-
-
-def plotly_js() -> bytes:
-    """The library as the plotly package brings it, without importing that package's Python."""
-    library = (resources.files("plotly") / "package_data" / "plotly.min.js").read_bytes()
-    return library.replace(b"</script", b"<\\/script") if b"</script" in library else library
+    files = {"style": "style.css", "script": "page.js"}
+    figures = [_figure(*figure) for figure in sheet.figures]
+    return b"".join(pieces("sheet.html.j2", files=files, page=sheet, figures=figures))
 
 
 def _figure(title: str, caption: str, plots: Sequence[Plot]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from pydantic import (
     Field,
     PlainSerializer,
     ValidatorFunctionWrapHandler,
+    WithJsonSchema,
     WrapValidator,
     model_validator,
 )
@@ -96,24 +97,44 @@ def _friction(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
     return value if isinstance(value, dict) else number(value)
 
 
+def _one_or_many(*kinds: dict[str, Any]) -> dict[str, Any]:
+    """The JSON schema of a value or a list of such."""
+    return {"anyOf": [*kinds, {"type": "array"}]}
+
+
 class RunPart(BaseModel):
     """`[run]`: what procedures expand; the rest is the core's and kept as it is."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    speed: Annotated[list[Speed] | None, BeforeValidator(lambda v: None if v is None else _speeds(v))] = None
+    speed: Annotated[
+        list[Speed] | None,
+        BeforeValidator(lambda v: None if v is None else _speeds(v)),
+        WithJsonSchema(
+            _one_or_many({"type": "number", "exclusiveMinimum": 0, "unit": "m/s"}, {"type": "string"})
+        ),
+    ] = None
+    """A speed, or a part of the vehicle's design speed (`"110% design"`): a case for each."""
     speed_kmh: Annotated[
-        list[Speed] | None, BeforeValidator(lambda v: None if v is None else _speeds_kmh(v))
+        list[Speed] | None,
+        BeforeValidator(lambda v: None if v is None else _speeds_kmh(v)),
+        WithJsonSchema(_one_or_many({"type": "number", "exclusiveMinimum": 0, "unit": "km/h"})),
     ] = None
+    """The same in km/h; one of the two."""
     wheel_profile: Annotated[
-        list[str] | None, BeforeValidator(lambda v: None if v is None else _names(v))
+        list[str] | None,
+        BeforeValidator(lambda v: None if v is None else _names(v)),
+        WithJsonSchema(_one_or_many({"type": "string"})),
     ] = None
+    """A profile that ships, or a file: a case for each; the vehicle's own if absent."""
     friction: Annotated[
         float | None,
         Field(ge=0.0, allow_inf_nan=False, strict=True),
         WrapValidator(_friction),
         PlainSerializer(lambda value: value, return_type=Any),
+        WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0}, {"type": "object"}]}),
     ] = None
+    """Between wheel and rail: a number, or a table as a case has it (per rail, along the track, falling with slip)."""
 
     @model_validator(mode="after")
     def _one_speed(self) -> Self:
@@ -166,9 +187,11 @@ class SignOff(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: Annotated[str, BeforeValidator(_a_person)]
+    """Of the person."""
     date: Annotated[str, BeforeValidator(_iso_date)]
+    """The day, as 2026-01-31."""
     model: Annotated[str, BeforeValidator(_a_hash)]
-    """`lmap.view.model_hash` of the vehicle in the spec's condition; of another model it is void."""
+    """Hash of the vehicle in the spec's condition, which a check without sign-off prints; for another it is void."""
 
 
 class Spec(BaseModel):
@@ -177,22 +200,30 @@ class Spec(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     id: str = Field(min_length=1)
+    """Of the test, as `2C.1`: what it is called by, and sorted."""
     title: str = Field(min_length=1)
+    """One line for people."""
     procedure: str
+    """What is done: one of those below."""
     vehicle: str = Field(min_length=1)
+    """A vehicle that ships, or a file seen from this one."""
     condition: str | None = None
+    """Of the vehicle's operating conditions; its design condition if absent."""
     track: dict[str, Any] = Field(default_factory=dict)
+    """Laid over the base track: `base`, or else the one that the vehicle names."""
     run: RunPart = Field(default_factory=RunPart)
+    """How it is run."""
     test: dict[str, Any] = Field(default_factory=dict)
-    """The procedure's own numbers, checked by its `SETTINGS`."""
+    """The procedure's own numbers."""
     set: dict[str, Any] = Field(default_factory=dict)
-    """Named parameters of the vehicle and keys of the spec; see `overrides`."""
+    """Named parameters of the vehicle and keys of the spec that are otherwise, as `--set` has them."""
     assumed: str | None = Field(default=None, min_length=1)
     """What of the test itself, beside its limits, no public source gives, and why it is as it is: a shape, a radius, a
     twist."""
     sign_off: SignOff | None = None
     """For procedures that wait for a person."""
     criterion: list[Criterion] = Field(min_length=1)
+    """What is judged, and what is shown beside it."""
 
 
 SPEC_KEYS_OF_RUN = frozenset({"controller", "speed_kmh"})
