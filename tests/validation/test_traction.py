@@ -323,18 +323,10 @@ def test_times_of_the_static_air_brake(compare: Compare) -> None:
         "independent, released": empties * math.log(20.0),
         "full service": behind(140.0 / 50.0, fills, 0.95),
         "emergency": behind(140.0 / 500.0, fills, 0.95),
-        # the last 15 kPa of the pipe are below what the distributor feels: it lets go that much sooner
         "full service, released": behind(140.0 / 30.0, empties, 0.95),
     }
     for label, closed in ways.items():
-        slack = 0.5 if label == "full service, released" else 0.0
-        compare(
-            f"time of the cylinders, {label}, s",
-            found[label],
-            closed,
-            grid + slack,
-            "first order behind a ramp",
-        )
+        compare(f"time of the cylinders, {label}, s", found[label], closed, grid, "first order behind a ramp")
 
 
 def mean_at(frame: pl.DataFrame, name: str, begin: float, end: float) -> float:

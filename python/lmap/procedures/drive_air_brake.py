@@ -57,7 +57,8 @@ def demanded(drive: Mapping[str, Any], brake: Mapping[str, Any], t: float) -> fl
     automatic = 0.0
     if reduction > brake["insensitivity"]:
         automatic = min(brake["distributor_ratio"] * reduction, brake["max_cylinder"])
-    return max(automatic, min(_at(drive, "independent_brake", t), brake["max_independent"]))
+    independent = min(_at(drive, "independent_brake", t), brake["max_independent"])
+    return float(max(automatic, independent))
 
 
 def times(frame: pl.DataFrame, command: Command | None) -> tuple[float, float]:

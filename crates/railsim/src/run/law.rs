@@ -112,7 +112,8 @@ impl<'a, 'o> Watching<'a, 'o> {
             return Ok(());
         }
         let found = format!("{}, which set nothing in the whole run", self.outside.name);
-        let allowed = "a control law that sets a torque or a brake at least once: does it return what it works out?";
+        let allowed =
+            "a control law that sets a torque or a brake at least once: does it return what it works out?";
         Err(Error::input(Fault::new(KeyPath::of("controller"), found, allowed)))
     }
 
