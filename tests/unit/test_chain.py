@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from lmap import signals, toml
+from lmap import signals
 from lmap.criteria import chain_problems, expand, judge, signal_problems, trace
 from lmap.criteria.chain import Criterion
 from lmap.criteria.units import STANDARD_GRAVITY, UNITS, comparable, factor
@@ -383,8 +383,3 @@ def test_a_trace_shows_every_stage_in_the_criterions_unit() -> None:
     assert stages[2].values.max() == judge(one, data, UNITS_OF_FRAME).value
     with pytest.raises(JudgementProblem, match="has no channel c"):
         trace(data, one.chain, "c")
-
-
-@pytest.mark.usefixtures("fake_core")
-def test_a_not_finite_number_is_found_by_key() -> None:
-    assert list(toml.not_finite({"a": [1.0, {"b": math.nan}]})) == [(("a", 1, "b"), "nan")]
