@@ -160,6 +160,21 @@ def test_a_speed_of_zero(messages: Callable[..., list[str]], old: str, new: str,
     assert "a number > 0" in message
 
 
+@pytest.mark.parametrize(
+    ("new", "said"),
+    [
+        (
+            "speed = 250",
+            "run.speed: found 250 m/s; allowed: at most 200 m/s, which is 720 km/h (250 km/h is 69.44 m/s)",
+        ),
+        ("speed_kmh = 1260", "run.speed_kmh: found 350 m/s; allowed: at most 200 m/s, which is 720 km/h"),
+    ],
+)
+def test_a_speed_beyond_anything_on_rails(messages: Callable[..., list[str]], new: str, said: str) -> None:
+    line = spoil(SPEC, 'speed = "110% design"', new)
+    assert messages(SPEC) == [f"lmap: {SPEC}:{line}: {said}"]
+
+
 def test_a_criterion_on_a_channel_that_does_not_exist(messages: Callable[..., list[str]]) -> None:
     line = spoil(SPEC, '"carbody.trail_pivot.ay"', '"carbody.trial_pivot.ay"')
     [message] = messages(SPEC)

@@ -146,6 +146,11 @@ SPOILED_SPECS = {
         'run.controller.inputs[0]: found "ws*.slop"',
     ),
     "unknown output": ('"bogie2.torque"]', '"bogie3.torque"]', 'did you mean "bogie2.torque"?'),
+    "one thing twice": (
+        'outputs = ["bogie1.torque", "bogie2.torque"]',
+        'outputs = ["torque", "ws1.torque"]',
+        "run.controller.outputs: found torque and ws1.torque, both of which set ws1.torque",
+    ),
     "a parameter that it does not take": (
         "kp = 2.0e5",
         "kq = 2.0e5",
@@ -251,11 +256,14 @@ def with_fmu(place: Path) -> Callable[..., Path]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize(
+    ("version", "parameters"),
+    [(2, ""), (3, ""), pytest.param(3, ", early_parts = 3.0", id="3, returns early")],
+)
 def test_an_fmu_gives_what_the_same_law_in_python_and_the_vehicles_own_gives(
-    version: int, place: Path, with_fmu: Callable[..., Path]
+    version: int, parameters: str, place: Path, with_fmu: Callable[..., Path]
 ) -> None:
-    with_fmu(version)
+    with_fmu(version, parameters)
     theirs = one(SPEC)
     [spec] = lmap.check(place / SPEC, jobs=2).specs
     assert spec.outcome == "pass"
@@ -290,6 +298,13 @@ def test_an_fmu_that_fails_is_one_message(
     parameters, expected = FAILING[what]
     with_fmu(version, parameters)
     assert expected.format(version) in message()
+
+
+def test_an_fmu_that_returns_early_and_gets_nowhere_is_one_message(
+    with_fmu: Callable[..., Path], message: Callable[..., str]
+) -> None:
+    with_fmu(3, ", early_parts = 2.0, stuck_at = 0.05")
+    assert "slip.fmu at t = 0.050 s: it returned early from doStep, at 0.05 s of 0.05 to 0.06 s" in message()
 
 
 def _without_binary(members: dict[str, bytes]) -> dict[str, bytes]:

@@ -47,7 +47,27 @@ EXPORT int fmi3DoStep(Instance *instance, double t, double step, bool final, boo
     (void)final;
     *event = *terminate = *early = false;
     *last = t + step;
-    return instance_step(instance, t, step);
+    Law *law = &instance->law;
+    const double *value = law->value;
+    if (t >= value[STUCK_AT]) {
+        *early = true;
+        *last = t;
+        return OK;
+    }
+    /* With early_parts = n a step takes n calls; the law answers in the last of them, to what the first was asked. */
+    if (law->parts == 0) {
+        law->begun = t;
+        law->whole = step;
+    }
+    const int left = (int)value[EARLY_PARTS] - law->parts;
+    if (left > 1) {
+        law->parts++;
+        *early = true;
+        *last = t + step / left;
+        return OK;
+    }
+    law->parts = 0;
+    return instance_step(instance, law->begun, law->whole);
 }
 
 EXPORT int fmi3Reset(Instance *instance) {

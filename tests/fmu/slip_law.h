@@ -20,11 +20,13 @@
 enum { OK = 0, ERROR = 3 };
 
 /* Value references; modelDescription*.xml has the same. */
-enum { SLIP = 0, TORQUE = 6, KP = 8, KI, SLIP_REFERENCE, TORQUE_LIMIT, FAIL_AT, NAN_AT, VALUES };
+enum { SLIP = 0, TORQUE = 6, KP = 8, KI, SLIP_REFERENCE, TORQUE_LIMIT, FAIL_AT, NAN_AT, EARLY_PARTS, STUCK_AT, VALUES };
 
 typedef struct {
     double value[VALUES];
     double integral[2];
+    int parts; /* of a step that has returned early (FMI 3), those that are done */
+    double begun, whole;
 } Law;
 
 static void law_reset(Law *law) {
@@ -33,7 +35,8 @@ static void law_reset(Law *law) {
     law->value[KI] = 4.0e5;
     law->value[SLIP_REFERENCE] = 0.05;
     law->value[TORQUE_LIMIT] = 2.0e4;
-    law->value[FAIL_AT] = law->value[NAN_AT] = 1.0e9;
+    law->value[FAIL_AT] = law->value[NAN_AT] = law->value[STUCK_AT] = 1.0e9;
+    law->value[EARLY_PARTS] = 1.0;
 }
 
 /* One sample at time t (s) that holds for the period (s). */

@@ -61,6 +61,8 @@ def test_a_law_sees_its_channels_and_its_torque_arrives() -> None:
         ({"ws9.torque": 1.0}, "`ws9.torque`"),
         ([0.0] * 6, "an answer of type list"),
         ({"notch": 8}, "`notch`"),
+        ({"bogie1.torque": 1.0, "ws1.torque": 2.0}, "ws1.torque and bogie1.torque at once"),
+        ({"torque": 1.0, "ws2.torque": 2.0}, "torque and ws2.torque, both of which set ws2.torque"),
         ({"torque": "full"}, "neither a number nor numbers"),
         ({"torque": "123456"}, "neither a number nor numbers"),
         ({"torque": 10**400}, "neither a number nor numbers"),

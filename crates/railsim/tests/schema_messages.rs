@@ -339,6 +339,11 @@ fn cases() -> Vec<(&'static str, Value, &'static str)> {
     vec![
         ("/run/speed", json!(0), "run.speed: found 0; allowed: a number > 0 m/s, or 0 with run.drive"),
         (
+            "/run/speed",
+            json!(216),
+            "run.speed: found 216 m/s; allowed: at most 200 m/s, which is 720 km/h (216 km/h is 60 m/s)",
+        ),
+        (
             "/run/friction",
             json!(1.6),
             "run.friction: found 1.6; allowed: a number > 0 and <= 1.5, or a table",

@@ -201,6 +201,20 @@ fn a_hundred_braked_wagons_hold_on_a_gradient_up_to_their_friction() {
     }
 }
 
+/// From the driver's valve, in the middle of the vehicle, to the middle of each mass: half the vehicle, whole masses and half of one, and the
+/// slack of the couplings between, drawn to the middle of it. Ahead and behind alike.
+#[test]
+fn the_brake_pipe_is_as_long_ahead_of_the_vehicle_as_behind() {
+    let gear = json!({ "slack": 0.1 });
+    let train = json!({ "wagons": 5, "ahead": 3, "mass": 60e3, "length": 15.0, "coupler": gear });
+    let line = Line::new(train, &level(5000.0));
+    let by_hand = [11.0 + 2.5 * 15.0 + 0.15, 11.0 + 1.5 * 15.0 + 0.1, 11.0 + 7.5 + 0.05, 18.55, 33.6];
+    for (i, length) in by_hand.into_iter().enumerate() {
+        let found = line.wagons.pipe_length(22.0, i);
+        assert!((found - length).abs() < 1e-12, "{i}: {found} {length}");
+    }
+}
+
 /// A closed cycle of draft gear loses what its friction takes: `4 friction x mean force x travel` of a slow triangle.
 #[test]
 fn draft_gear_has_the_hysteresis_that_is_written() {
@@ -211,5 +225,11 @@ fn draft_gear_has_the_hysteresis_that_is_written() {
     for (h, factor) in [(1.0, 1.4), (-1.0, 0.6)] {
         assert!((draft_force(&gear, 0.03, 0.0, h) - factor * 2e5).abs() < 1e-6);
         assert!((draft_force(&gear, -0.03, 0.0, -h) + factor * 2e5).abs() < 1e-6);
+    }
+    // Drawn and pushed, a gear that gives way faster than its force falls is let go, not turned round.
+    let damped = DraftGear { damping: 1e6, ..gear };
+    assert_eq!((draft_force(&damped, 0.011, -1.0, -1.0), draft_force(&damped, -0.011, 1.0, 1.0)), (0.0, 0.0));
+    for (e, rate, h) in [(f64::NAN, 0.0, 1.0), (0.03, f64::NAN, 1.0), (-0.03, 0.0, f64::NAN)] {
+        assert!(draft_force(&damped, e, rate, h).is_nan(), "{e} {rate} {h}");
     }
 }

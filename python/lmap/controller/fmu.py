@@ -25,6 +25,8 @@ from lmap.errors import InputProblem, Problem, listed, nearest_hint
 _ALLOWED = "an FMU of FMI 2.0 or 3.0 for co-simulation"
 _FLOATS = ("Real", "Float64")
 """Type of a number in FMI 2 and 3."""
+_ROUNDING = 1e-9
+"""Share of a step that is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,13 +197,29 @@ class Running:
         given = self._layout.seen(period, seen)
         try:
             self._set(self._inputs, list(given.values()))
-            done = self._instance.doStep(t, period)
+            self._step(t, period)
             values = self._get(self._outputs)
+        except LawFailed:
+            raise
         except Exception as error:  # noqa: BLE001 -- what fmpy raises
             raise LawFailed(self._why(error)) from None
-        if self._unit.version == 3 and done[1]:
-            raise LawFailed(f"it asks to end the simulation{self._says()}")
         return self._layout.arranged(dict(zip(self._layout.targets, values, strict=True)))
+
+    def _step(self, t: float, step: float) -> None:
+        """A whole step. One of FMI 3 may return early: it goes on from where it says that it has come to."""
+        end, nearly = t + step, _ROUNDING * step
+        while step > nearly:
+            done = self._instance.doStep(t, step)
+            if self._unit.version == 2:
+                return
+            _, terminate, early, reached = done
+            if terminate:
+                raise LawFailed(f"it asks to end the simulation{self._says()}")
+            if not early:
+                return
+            if not t + nearly < reached <= end + nearly:
+                raise LawFailed(f"it returned early from doStep, at {reached:g} s of {t:g} to {end:g} s")
+            t, step = reached, end - reached
 
     def _set(self, references: Sequence[int], values: Sequence[float]) -> None:
         if references:

@@ -63,10 +63,22 @@ class Layout:
                 raise LawFailed(f"an answer with `{key}`; allowed: {listed(self.targets, 20)}")
             group = self.targets[key]
             values |= dict(zip(group, _numbers(key, value, len(group)), strict=True))
+        if clash := _twice({key: self.targets[key] for key in answer}):
+            raise LawFailed(f"an answer with {clash}")
         missing = [name for name in self.targets if name not in answer] if self.declared else []
         if missing:
             raise LawFailed(f"an answer without {listed(missing)}, declared as an output")
         return [values.get(output) for output in self.outputs]
+
+
+def _twice(targets: Targets) -> str | None:
+    """Two names that set the same thing, in words. (What of a bogie and of its axles overlaps, the core knows.)"""
+    first: dict[str, str] = {}
+    for name, group in targets.items():
+        for output in group:
+            if first.setdefault(output, name) != name:
+                return f"{first[output]} and {name}, both of which set {output}"
+    return None
 
 
 def _numbers(key: str, value: Any, count: int) -> list[float]:
@@ -127,6 +139,8 @@ def chosen(written: Sequence[str] | Mapping[str, str], known: Targets) -> dict[s
         hint = nearest_hint(name, known)
         allowed = listed(known, 20)
         problems.append(Problem(key=("outputs", at), found=f'"{name}"', allowed=allowed, hint=hint))
+    if clash := _twice(found):
+        problems.append(Problem(key=("outputs",), found=clash, allowed="what a wheelset gets once"))
     if problems:
         raise InputProblem(problems)
     return found

@@ -2,6 +2,7 @@
 
 use super::Table;
 use crate::equipment::air_brake::Pneumatics;
+use crate::equipment::train::Wagons;
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::run::{Control, Ended, Outcome};
 use crate::schema::Case;
@@ -32,8 +33,8 @@ pub(super) fn run(case: &Case, control: &dyn Control) -> Result<Outcome> {
     let mut own = Pneumatics::new(data, 0.0, drive, true);
     let mut rear = case.run.train.as_ref().map(|train| {
         let vehicle = case.vehicle.outline.as_ref().map_or(0.0, |o| o.length_over_couplers);
-        let distance = vehicle + f64::from(train.wagons - train.ahead.min(train.wagons)) * train.length;
-        Pneumatics::new(data, distance, drive, false)
+        let train = Wagons::new(train.clone(), case.run.gravity);
+        Pneumatics::new(data, train.pipe_length(vehicle, train.masses.len() - 1), drive, false)
     });
     let mut table = Table::new(columns(case));
     let mut step: u64 = 0;

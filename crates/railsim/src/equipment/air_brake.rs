@@ -71,7 +71,8 @@ impl Pneumatics {
         self.pipe += (target - self.pipe).clamp(-down * period, data.release_rate * period);
 
         let automatic = self.automatic(data);
-        let wanted = automatic.max(independent.min(data.max_independent));
+        let independent = independent.min(data.max_independent);
+        let wanted = automatic.max(independent);
         let filling = wanted > self.cylinder;
         let tau = if filling { data.apply_time / TO_95 } else { data.release_time / TO_5 };
         let before = self.cylinder;
@@ -156,6 +157,17 @@ mod tests {
         assert!((front.cylinder - 2.5e5).abs() < 10.0);
         // What is in the cylinder has left the reservoir: V_r (p0 - p_r) = V_c p_c.
         assert!((front.reservoir - (5e5 - front.cylinder / 4.0)).abs() < 10.0);
+    }
+
+    /// More is asked of the independent brake than it can give: the automatic one fills the cylinder, out of the reservoir.
+    #[test]
+    fn the_reservoir_gives_what_the_independent_brake_cannot() {
+        let both = drive(json!({ "brake_pipe_reduction": [[0.01, 3e5]] }));
+        let mut p = Pneumatics::new(&brake(), 0.0, &both, true);
+        run(&mut p, &both, 4.5e5, 0.0, 60.0);
+        // 3.5e5 Pa of the independent brake, which is the quicker; the last 0.3e5 Pa, as far as max_cylinder, from the reservoir.
+        println!("cylinder {:.0} Pa, reservoir {:.0} Pa", p.cylinder, p.reservoir);
+        assert!((p.cylinder - 3.8e5).abs() < 10.0 && p.reservoir < 5e5 - 0.3e5 / 4.0 + 10.0);
     }
 
     #[test]

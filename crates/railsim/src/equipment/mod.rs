@@ -203,6 +203,8 @@ pub struct Acting<'m> {
     observer: SlipObserver,
     controllers: Vec<SlipController>,
     torques: Vec<Lag>,
+    /// The same without slip control or a control law.
+    uncut: Vec<Lag>,
     motors: Vec<Motor>,
     own_brake: Option<Pneumatics>,
     wagon_brakes: Vec<f64>,
@@ -228,16 +230,18 @@ impl<'m> Acting<'m> {
     pub fn new(model: &'m Model, design: &'m Equipment) -> Self {
         let wheelsets = model.wheelsets.len();
         let drive = &design.drive;
-        let share = 1.0 / design.bogies.len().max(1) as f64;
         let rating = design.traction.as_ref().and_then(|t| t.thermal);
+        // Every axle has the same effort.
+        let share = |bogie: &Bogie| bogie.wheelsets.len() as f64 / wheelsets as f64;
         let pneumatics = |distance: f64, own: bool| {
             design.air_brake.as_ref().map(|data| Pneumatics::new(data, distance, drive, own))
         };
         let pipes =
             design.train.as_ref().filter(|t| t.written.brake_force > 0.0).map_or(Vec::new(), |train| {
-                let length = -design.faces.places[1].x;
+                let [front, rear] = &design.faces.places;
+                let length = front.x - rear.x;
                 (0..train.masses.len())
-                    .filter_map(|i| pneumatics(length + train.distance(i), false))
+                    .filter_map(|i| pneumatics(train.pipe_length(length, i), false))
                     .collect()
             });
         let masses = design.train.as_ref().map_or(0, |t| t.masses.len());
@@ -249,7 +253,11 @@ impl<'m> Acting<'m> {
             observer: SlipObserver::new(&drive.observer, wheelsets),
             controllers: vec![SlipController::default(); wheelsets],
             torques: vec![Lag::default(); wheelsets],
-            motors: rating.map_or(Vec::new(), |r| vec![Motor::new(&r, share); design.bogies.len()]),
+            uncut: vec![Lag::default(); wheelsets],
+            motors: rating
+                .iter()
+                .flat_map(|r| design.bogies.iter().map(|b| Motor::new(r, share(b))))
+                .collect(),
             own_brake: pneumatics(0.0, true),
             wagon_brakes: vec![0.0; masses],
             pipes,
@@ -318,22 +326,8 @@ impl<'m> Acting<'m> {
             Some(sand) if t >= sand.delay && sand.demand.at(t - sand.delay) > 0.0 => sand.friction_factor,
             _ => 1.0,
         };
-        let mut independent = self.asked.unwrap_or_else(|| drive.independent_brake.at(t));
-        if drive.blending
-            && let (Some(data), Some(brake)) = (&self.design.air_brake, &self.design.dynamic_brake)
-        {
-            let wanted = drive.dynamic_brake.at(t) * brake.max_effort;
-            // What the motors hold back with, either way that the vehicle rolls.
-            let back = if v < 0.0 { 1.0 } else { -1.0 };
-            let given: f64 = self
-                .torques
-                .iter()
-                .zip(&model.wheelsets)
-                .map(|(lag, set)| (back * lag.at(t, self.lag)).max(0.0) / set.radius)
-                .sum();
-            let missing = if wanted > 0.0 { (wanted - given).max(0.0) } else { 0.0 };
-            independent = independent.max(Pneumatics::pressure_for(data, missing, self.wheelsets, v));
-        }
+        let asked = self.asked.unwrap_or_else(|| drive.independent_brake.at(t));
+        let independent = asked.max(self.blended(model, t, v));
         if let (Some(own), Some(data)) = (&mut self.own_brake, &self.design.air_brake) {
             if t > 0.0 {
                 own.pass(data, drive, independent, t, period);
@@ -345,6 +339,25 @@ impl<'m> Acting<'m> {
             }
         }
         self.press();
+    }
+
+    /// Cylinder pressure (Pa) that makes up what the dynamic brake lacks of its demand: where its curve or `effort_limit` is below it, and
+    /// while it builds up. What slip control takes is not made up: the same wheels, which all have the one cylinder pressure, would
+    /// have to carry it. A control law's torque counts as slip control's.
+    fn blended(&self, model: &Model, t: f64, v: f64) -> f64 {
+        let drive = &self.design.drive;
+        let (true, Some(data), Some(brake)) =
+            (drive.blending, &self.design.air_brake, &self.design.dynamic_brake)
+        else {
+            return 0.0;
+        };
+        let wanted = drive.dynamic_brake.at(t) * brake.max_effort;
+        // What the motors hold back with, either way that the vehicle rolls.
+        let back = if v < 0.0 { 1.0 } else { -1.0 };
+        let given = self.uncut.iter().zip(&model.wheelsets);
+        let given: f64 = given.map(|(lag, set)| (back * lag.at(t, self.lag)).max(0.0) / set.radius).sum();
+        let missing = if wanted > 0.0 { (wanted - given).max(0.0) } else { 0.0 };
+        Pneumatics::pressure_for(data, missing, self.wheelsets, v)
     }
 
     /// Puts what a control law sets at time `t` over what the vehicle's own controllers have just commanded; brakes follow from
@@ -398,7 +411,7 @@ impl<'m> Acting<'m> {
             drive.slip_reference.as_ref().map_or(data.slip_reference, |demand| demand.at(t)).min(limit);
         let gains = Gains { kp: data.kp, ki: data.ki };
         let radius = |w: usize| model.wheelsets[w].radius;
-        let Self { observer, controllers, torques, lag, .. } = self;
+        let Self { observer, controllers, torques, uncut, lag, .. } = self;
         let mut found = |w: usize| {
             let spin = x[map.u(map.bodies + w).start + coordinate::THETA];
             sign * forward * slip(observer.rim_speed(w, -spin * radius(w)), v)
@@ -418,6 +431,7 @@ impl<'m> Acting<'m> {
             };
             for w in unit {
                 torques[*w].command(t, *lag, sign * forward * torque);
+                uncut[*w].command(t, *lag, sign * forward * reference);
             }
         };
         for bogie in &self.design.bogies {
@@ -472,7 +486,8 @@ impl<'m> Acting<'m> {
         -force * radius
     }
 
-    /// Running resistance of the vehicle, at the body that the coupler is on.
+    /// Running resistance of the vehicle, at the body that the coupler is on. Curve resistance is none of it: that is what creep at its
+    /// wheels makes in a curve, and they are here.
     fn resist(&self, model: &Model, scratch: &mut Scratch) {
         if !self.design.drive.resistance {
             return;
@@ -480,9 +495,7 @@ impl<'m> Acting<'m> {
         let body = self.design.faces.body;
         let k: &Kinematics = &scratch.kinematics[body];
         let (mass, v) = (model.mass(), k.v_T.x);
-        let curvature = k.frame.k_T.z;
-        let against = effort::davis(mass, 1.0, v) + effort::curve_resistance(mass, curvature);
-        let force = k.frame.R_IT.column(0) * (-against * effort::direction(v));
+        let force = k.frame.R_IT.column(0) * (-effort::davis(mass, 1.0, v) * effort::direction(v));
         scratch.wrench[body].f += force;
     }
 

@@ -29,18 +29,19 @@ const STICK_DAMPING: f64 = 0.02;
 /// Numbers of state of a mass.
 pub const WAGON: usize = 4;
 
-/// Force of draft gear (N, + pull): elongation `e` (m, 0 in the middle of the slack), its rate (m/s), side of friction `h`.
+/// Force of draft gear (N, + pull): elongation `e` (m, 0 in the middle of the slack), its rate (m/s), side of friction `h`. NaN of any of them is
+/// NaN: a train that is lost takes the vehicle with it, where the run is ended.
 #[must_use]
 pub fn draft_force(gear: &DraftGear, e: f64, rate: f64, h: f64) -> f64 {
-    let travel = (e.abs() - 0.5 * gear.slack).max(0.0);
-    if travel == 0.0 {
+    let travel = e.abs() - 0.5 * gear.slack;
+    if travel <= 0.0 {
         return 0.0;
     }
     let sign = e.signum();
     let solid = gear.travel.map_or(0.0, |end| gear.solid_stiffness * (travel - end).max(0.0));
     let elastic = sign * (gear.stiffness * travel + solid);
     let whole = elastic + gear.friction * elastic.abs() * h + gear.damping * rate;
-    if sign > 0.0 { whole.max(0.0) } else { whole.min(0.0) }
+    if sign * whole < 0.0 { 0.0 } else { whole }
 }
 
 /// Energy stored in draft gear, J: the elastic part.
@@ -147,6 +148,13 @@ impl Wagons {
         let ahead = self.ahead();
         let between = if i < ahead { ahead - 1 - i } else { i - ahead } as f64;
         (between + 0.5) * self.written.length + (between + 1.0) * 0.5 * self.written.coupler.slack
+    }
+
+    /// Brake pipe (m) between the driver's valve, in the middle of the vehicle of length `vehicle` (m, over its couplers), and the middle of
+    /// mass `i`, ahead of it or behind.
+    #[must_use]
+    pub fn pipe_length(&self, vehicle: f64, i: usize) -> f64 {
+        0.5 * vehicle + self.distance(i)
     }
 
     /// Places the train at `speed` (m/s) about a vehicle whose front and rear couplers are at `places` (m), drawn out so that every gear

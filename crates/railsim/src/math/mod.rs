@@ -18,7 +18,7 @@ pub type Vec3 = nalgebra::Vector3<f64>;
 /// Three by three.
 pub type Mat3 = nalgebra::Matrix3<f64>;
 
-/// Straight lines between points `[x, y]` (x rising), level beyond both ends; 0 without points.
+/// Straight lines between points `[x, y]` (x rising), level beyond both ends (NaN lies before the first); 0 without points.
 #[must_use]
 pub fn interpolate(points: &[[f64; 2]], x: f64) -> f64 {
     let after = points.partition_point(|p| p[0] <= x);

@@ -2,7 +2,11 @@
 
 /// Work that is compiled twice, for every processor and for AVX2. `run` is to be `#[inline(always)]`, and so is what it calls.
 ///
-/// No fused multiply-add is among the instructions that are let in: both do the same operations in the same order, and the bytes do not depend on the machine.
+/// No fused multiply-add is among the instructions that are let in: both do the same operations in the same order, so that which of them runs
+/// changes no bit. Results are the same bytes on every run of one machine with any number of threads, and on all machines whose mathematical library
+/// rounds alike. It need not: glibc chooses sin, cos, exp, ln, pow, atan with or without fused multiply-add when it is
+/// loaded, and they differ in the last bit. The right-hand side calls it for contacts on the textbook's cone, angles beyond
+/// 0.12 rad ([`super::angle::small`]), track curves and falling friction; tables, profiles and irregularities are made with it.
 pub trait Work {
     /// Does it.
     fn run(&mut self);

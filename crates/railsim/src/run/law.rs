@@ -1,12 +1,12 @@
 //! A control law of the user's: at every sample it sees channels and sets torques and brakes.
 
-use crate::dynamics::VehicleSystem;
+use crate::dynamics::{Model, VehicleSystem};
 use crate::error::{Error, Fault, KeyPath, Result};
 use crate::integrator::System;
 use crate::run::channel::{Source, plan};
 use crate::run::recorder::value;
 
-/// What a control law can set.
+/// What a control law can set: one torque at a time for each wheelset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Output {
     /// `<wheelset>.torque`: torque asked of the inverter of a wheelset, N m, + forward.
@@ -54,6 +54,8 @@ pub(crate) struct Watching<'a, 'o> {
     outside: &'o mut Outside<'a>,
     sources: Vec<Source>,
     outputs: Vec<Output>,
+    /// Outputs, two and two, that act on the same wheelset.
+    overlaps: Vec<[usize; 2]>,
     seen: Vec<f64>,
     set: Vec<Option<f64>>,
     /// Whether it has ever set anything.
@@ -77,8 +79,10 @@ impl<'a, 'o> Watching<'a, 'o> {
                 return Err(Error::Input(faults));
             }
         };
+        let overlaps = overlaps(&outputs, system.model);
         let (seen, set) = (vec![0.0; sources.len()], vec![None; outputs.len()]);
-        Ok(Self { outside, sources, outputs, seen, set, acted: false, slope: vec![0.0; system.size()] })
+        let slope = vec![0.0; system.size()];
+        Ok(Self { outside, sources, outputs, overlaps, seen, set, acted: false, slope })
     }
 
     /// Asks the law at `t`, `x` and puts its answer into the equipment.
@@ -92,7 +96,7 @@ impl<'a, 'o> Watching<'a, 'o> {
         let answer = self.outside.law.sample(t, &self.seen, &mut self.set);
         answer.and_then(|()| self.check()).map_err(|why| {
             let found = format!("{} at t = {t:.3} s: {why}", self.outside.name);
-            let allowed = "a control law that answers every time with finite numbers";
+            let allowed = "a control law that answers every time with finite numbers, no wheelset's twice";
             Error::input(Fault::new(KeyPath::of("controller"), found, allowed))
         })?;
         self.acted |= self.set.iter().any(Option::is_some);
@@ -126,8 +130,27 @@ impl<'a, 'o> Watching<'a, 'o> {
                 return Err(format!("{name} = {value} {unit}"));
             }
         }
+        for pair in &self.overlaps {
+            if pair.iter().all(|i| self.set[*i].is_some()) {
+                let [a, b] = pair.map(|i| &self.outside.outputs[i]);
+                return Err(format!("{a} and {b} at once, both of which act on the same wheelset"));
+            }
+        }
         Ok(())
     }
+}
+
+/// Outputs, two and two, of which a law may set one at a time: which torque a wheelset gets must not hang on their order.
+fn overlaps(outputs: &[Output], model: &Model) -> Vec<[usize; 2]> {
+    let bogies = model.equipment.as_ref().map_or(&[][..], |e| &e.bogies);
+    let turns = |output: Output, w: usize| match output {
+        Output::Torque(own) => own == w,
+        Output::BogieTorque(b) => bogies[b].wheelsets.contains(&w),
+        Output::IndependentBrake => false,
+    };
+    let both = |a: Output, b: Output| (0..model.wheelsets.len()).any(|w| turns(a, w) && turns(b, w));
+    let pairs = (0..outputs.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+    pairs.filter(|[a, b]| outputs[*a] == outputs[*b] || both(outputs[*a], outputs[*b])).collect()
 }
 
 /// What stands behind each of `names`; a fault for each that `known` has not.

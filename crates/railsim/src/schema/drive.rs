@@ -165,10 +165,12 @@ pub struct Drive {
     /// Parking brake applied, from the start.
     #[serde(default)]
     pub parking_brake: bool,
-    /// Air brake of the vehicle takes what the dynamic brake does not give of its demand.
+    /// Air brake of the vehicle makes up what the dynamic brake's curve, its build-up and `effort_limit` leave of the demand (which is a share of its full
+    /// effort at every speed); never what slip control takes off, which the same wheels would have to carry.
     #[serde(default)]
     pub blending: bool,
-    /// Largest effort of the whole vehicle that the torque reference asks for, N; the notch curve alone if absent.
+    /// Largest effort of the whole vehicle that the torque reference asks of the motors, N; the notch curve alone if absent. It limits the
+    /// machines, not the demand: with `blending` air brakes add the rest of that.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "unit" = "N"))]
     pub effort_limit: Option<f64>,
@@ -195,7 +197,7 @@ pub struct Drive {
     /// Sand.
     #[serde(default)]
     pub sanding: Option<Sanding>,
-    /// Running resistance of the vehicle itself, by the same formula as the train's.
+    /// Running resistance of the vehicle itself, by the same formula as the train's but for curve resistance, which its wheels make.
     #[serde(default = "yes")]
     pub resistance: bool,
     /// The speed hold stays on: the vehicle pulls against it at constant speed, as against a brake van. For adhesion curves.

@@ -53,7 +53,7 @@ impl RunKind {
 pub struct Run {
     /// What is done.
     pub kind: RunKind,
-    /// Speed, m/s; 0 stands. Of a ramp-down or bifurcation the speed at which it begins.
+    /// Speed, m/s, at most 200 (720 km/h); 0 stands. Of a ramp-down or bifurcation the speed at which it begins.
     #[schemars(extend("minimum" = 0, "unit" = "m/s"))]
     pub speed: f64,
     /// Coefficient of friction between wheel and rail: a number, or a table per rail, along the track, falling with the slip velocity.

@@ -24,6 +24,9 @@ const OWNED: [(&str, &[RunKind]); 11] = [
 /// Speeds that a search looks at, at most; more is a slip of the pen.
 const MOST_SPEEDS: f64 = 1000.0;
 
+/// Fastest that any run may be, m/s: 720 km/h, beyond all that has run on wheels and rails (574.8 km/h, 2007). More is km/h given as m/s.
+const MOST_SPEED: f64 = 200.0;
+
 /// What is said of a key that only a driven run has a use for.
 const BESIDE_DRIVE: &str = "this key beside run.drive";
 
@@ -40,6 +43,7 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
             faults.push(Fault::new(found.at.clone(), format!("it with \"{}\"", run.kind.name()), allowed));
         }
     }
+    too_fast(node, &run, faults);
     let stepped = match (run.kind, &run.search) {
         (RunKind::Time, _) => true,
         (RunKind::CriticalSpeed, Some(search)) => !matches!(search, Search::Linear { .. }),
@@ -73,6 +77,27 @@ pub(super) fn relations(node: &Node, faults: &mut Vec<Fault>) {
             ),
         },
         _ => {}
+    }
+}
+
+/// Speeds beyond [`MOST_SPEED`], wherever a run has one.
+fn too_fast(node: &Node, run: &Run, faults: &mut Vec<Fault>) {
+    fn items<'a>(table: &'a Node, key: &str) -> &'a [Node] {
+        table.get(key).map_or(&[], Node::items)
+    }
+    let loads = items(node, "load").iter().zip(&run.load);
+    let paths = loads.filter(|(_, load)| matches!(load, Load::Speed { .. }));
+    let speeds = node
+        .get("speed")
+        .into_iter()
+        .chain(items(node, "speeds"))
+        .chain(paths.flat_map(|(table, _)| items(table, "path")))
+        .chain(node.get("search").into_iter().flat_map(|search| items(search, "range")));
+    for found in speeds {
+        let Some(v) = found.number().filter(|v| *v > MOST_SPEED) else { continue };
+        let allowed = format!("at most {MOST_SPEED} m/s, which is {} km/h", 3.6 * MOST_SPEED);
+        let hint = format!("{v} km/h is {} m/s", (v / 0.036).round() / 100.0);
+        faults.push(Fault::new(found.at.clone(), format!("{v} m/s"), allowed).hint(hint));
     }
 }
 
