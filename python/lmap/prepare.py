@@ -310,12 +310,12 @@ def _profiles(
     found: dict[str, tuple[Path, str]] = {}
     data: dict[str, Any] = {}
     problems: list[Problem] = []
-    places = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
     for case in cases:
         for name, key in case.profile_names.items():
             if name in data:
                 continue
             from_caller = ".".join(map(str, key)) in loaded.given and files.PROFILE.is_path(name)
+            places = _places(key, loaded, vehicle, base)
             try:
                 path = first_place(name, [Path.cwd(), *places] if from_caller else places)
                 text = files.read_text(path, "profile")
@@ -332,6 +332,17 @@ def _profiles(
     if problems:
         raise InputProblem(problems)
     return found, data
+
+
+def _places(
+    key: KeyPath, loaded: LoadedSpec, vehicle: Vehicle, base: toml.Document | None
+) -> Sequence[Path]:
+    """Where a profile is looked for: from the file that names it, then from the others."""
+    written_in = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
+    if _is_written(loaded, key):
+        return written_in
+    named_by = base if key[0] == "track" and base is not None else vehicle.document
+    return list(dict.fromkeys([named_by.path, *written_in]))
 
 
 def _checked(

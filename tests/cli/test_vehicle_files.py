@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from commands import Ran, spoil
 
-from lmap import vehicle
+from lmap import files, vehicle
 from lmap.errors import InputProblem
 
 pytestmark = pytest.mark.needs_core
@@ -310,3 +310,27 @@ def test_faults_of_data_are_told_by_key(spoiled: dict[str, Any], message: str) -
         vehicle.Vehicle.of(data | spoiled, beside=ROOT)
     assert message in str(refused.value)
     assert ".toml" not in str(refused.value)
+
+
+def test_a_profile_is_the_one_beside_the_vehicle_that_names_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not the one of that name which ships with the spec."""
+    from lmap.check import find_specs
+    from lmap.prepare import prepare
+
+    shutil.copytree(ROOT / "models", tmp_path / "models")
+    mine = tmp_path / "models/profiles/anzr1.csv"
+    shutil.copy(mine.with_name("anzr1_worn_1.csv"), mine)
+    monkeypatch.chdir(ROOT)
+    [spec] = find_specs("axle_loads")
+    found = {
+        one.role: one.sha256
+        for one in prepare(spec, {"vehicle": str(tmp_path / "models/vehicles/coco134.toml")}).inputs
+        if Path(one.path).name == "anzr1.csv"
+    }
+    ours, theirs = (
+        files.sha256(files.read_text(path, "profile")) for path in (mine, ROOT / "models/profiles/anzr1.csv")
+    )
+    assert ours != theirs
+    assert found == {"profile": ours}
