@@ -334,9 +334,7 @@ def _profiles(
     return found, data
 
 
-def _places(
-    key: KeyPath, loaded: LoadedSpec, vehicle: Vehicle, base: toml.Document | None
-) -> Sequence[Path]:
+def _places(key: KeyPath, loaded: LoadedSpec, vehicle: Vehicle, base: toml.Document | None) -> Sequence[Path]:
     """Where a profile is looked for: from the file that names it, then from the others."""
     written_in = [loaded.document.path, vehicle.document.path, *([base.path] if base is not None else [])]
     if _is_written(loaded, key):

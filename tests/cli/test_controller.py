@@ -100,7 +100,7 @@ def test_a_law_that_is_set_is_seen_from_here_and_that_of_a_case_from_its_spec(
         lmap.check(place / "laws" / SPEC, set=settings)
     [problem] = raised.value.problems
     assert 'found "here:law": no here.py' in str(problem)
-    (place / "here.py").write_text("def law(t, seen):\n    return None\n", encoding="utf-8")
+    (place / "here.py").write_text("def law(t, seen):\n    return {'torque': 0.0}\n", encoding="utf-8")
     [spec] = lmap.check(place / "laws" / SPEC, set=settings).specs
     assert {one.path for one in spec.inputs if one.role == "control law"} == {"laws/slip_pi.py", "here.py"}
 

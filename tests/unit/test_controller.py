@@ -86,6 +86,29 @@ def test_a_law_that_raises_is_one_message_that_names_it() -> None:
 
 
 @pytest.mark.needs_core
+@pytest.mark.parametrize("answer", [None, {}])
+def test_a_law_that_never_sets_anything_is_one_message(answer: Any) -> None:
+    """A forgotten `return`: the vehicle's own controllers would have driven."""
+
+    def my_law(t: float, channels: dict[str, float]) -> Any:
+        return answer
+
+    with pytest.raises(
+        InputProblem, match=r"my_law, which set nothing in the whole run; allowed: .*return"
+    ) as one:
+        controller.simulate(short(), my_law)
+    assert len(one.value.problems) == 1
+
+
+@pytest.mark.needs_core
+def test_a_law_may_act_late_and_only_once() -> None:
+    def law(t: float, channels: dict[str, float]) -> dict[str, float] | None:
+        return {"ws1.torque": 1000.0} if abs(t - 0.15) < 1e-6 else None
+
+    assert controller.simulate(short(), law).height == 21
+
+
+@pytest.mark.needs_core
 def test_a_law_sets_what_it_likes_by_name() -> None:
     def law(t: float, channels: dict[str, float]) -> dict[str, float]:
         return {"ws1.torque": 1000.0, "bogie2.torque": 2000.0}

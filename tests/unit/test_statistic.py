@@ -14,6 +14,7 @@ from lmap.errors import JudgementProblem
 from lmap.signals import BY_NAME, LINKS
 from lmap.signals.statistic import (
     AveragePeak,
+    Last,
     MaxAbs,
     Maximum,
     Mean,
@@ -171,6 +172,8 @@ def test_plain_statistics_of_a_ramp() -> None:
     ramp = signal(np.arange(-30, 11))
     assert Maximum().read(ramp).value == 10.0
     assert Minimum().read(ramp).value == -30.0
+    assert Last().read(signal(np.arange(11, -31, -1))).value == -30.0
+    assert Last().read(ramp).t == 40 / RATE
     assert MaxAbs().read(ramp).value == 30.0
     assert MaxAbs().read(ramp).t == 0.0
     assert PeakToPeak().read(ramp).value == 40.0

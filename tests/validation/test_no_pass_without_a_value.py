@@ -44,6 +44,27 @@ def test_a_stretch_without_samples_is_an_error(tmp_path: Path) -> None:
     assert "no sample lies within" in str(spec.criteria[0].message)
 
 
+@pytest.mark.parametrize(
+    ("name", "end", "criterion", "why"),
+    [
+        ("parking", 12.0, "movement in 60 s", "the run ends at 12 s, before 70 s"),
+        ("continuous_effort", 1.0, "balance speed kept", "the run ends at 1 s, before 60 s"),
+        (
+            "balance_speed",
+            1.0,
+            "time to 92 % of the balance speed",
+            "run.time_to_speed has no value in this run",
+        ),
+        ("effort_speed", 1.0, "time to 40 km/h", "run.time_to_speed has no value in this run"),
+    ],
+)
+def test_a_driven_run_that_is_too_short_is_an_error(name: str, end: float, criterion: str, why: str) -> None:
+    spec = checked(SPECS / f"{name}.toml", **{"run.drive.until.time": end})
+    judged = [one for one in spec.criteria if one.name == criterion]
+    assert spec.outcome is Outcome.ERROR
+    assert {(one.outcome, one.value, one.message) for one in judged} == {(Outcome.ERROR, None, why)}
+
+
 def test_what_does_not_exist_is_refused_before_anything_runs(tmp_path: Path) -> None:
     text = (SPECS / "hunting.toml").read_text(encoding="utf-8")
     spec_file = tmp_path / "none.toml"

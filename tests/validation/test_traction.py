@@ -306,6 +306,29 @@ def test_stopping_times_of_table_8(
     assert float(frame.select("^ws..slip$").min_horizontal().min()) > -0.05  # type: ignore[arg-type]
 
 
+def test_times_of_the_static_air_brake(compare: Compare) -> None:
+    """A vessel through an orifice, 4 s to 95 %, 12 s from there to 5 %, behind a pipe of constant rate."""
+    (spec,) = lmap.check(SPECS / "static_air_brake.toml").specs
+    found = {one.case: one.value for one in spec.criteria if one.unit == "s" and one.value is not None}
+    fills, empties = 4.0 / math.log(20.0), 12.0 / math.log(19.0)
+
+    def behind(rise: float, tau: float, share: float) -> float:
+        """Time to `share` of a pressure that is asked for at a constant rate for `rise` s."""
+        lag = tau / rise * (1.0 - math.exp(-rise / tau))
+        return rise + tau * math.log(lag / (1.0 - share))
+
+    grid = 0.05 + 0.01  # s, of the rows and of the controller
+    ways = {
+        "independent, applied": 4.0,
+        "independent, released": empties * math.log(20.0),
+        "full service": behind(140.0 / 50.0, fills, 0.95),
+        "emergency": behind(140.0 / 500.0, fills, 0.95),
+        "full service, released": behind(140.0 / 30.0, empties, 0.95),
+    }
+    for label, closed in ways.items():
+        compare(f"time of the cylinders, {label}, s", found[label], closed, grid, "first order behind a ramp")
+
+
 def mean_at(frame: pl.DataFrame, name: str, begin: float, end: float) -> float:
     """Mean between two places of the vehicle, m."""
     import polars as pl

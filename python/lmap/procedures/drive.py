@@ -2,9 +2,10 @@
 
 One case for every `[[test.case]]` of the spec: its label, and what it changes in `[run]` and `[track]`. Without a
 speed the vehicle starts from rest. Added to every frame, the same in each row: `run.duration` (s), `run.distance`
-(m), `run.final_speed`, `run.least_speed` (m/s), `run.deceleration` (m/s2, the mean from start to end) and
-`run.movement` (m, the largest distance from the start). The air brake by itself gets `brake.application_time` and
-`brake.release_time` (s).
+(m), `run.final_speed`, `run.least_speed` (m/s), `run.deceleration` (m/s2, the mean from start to end),
+`run.movement` (m, the largest distance from the start), `run.time_to_speed` (s) and `run.distance_to_speed` (m): to the
+speed at which `until` ends the run, no number (NaN) where it ends otherwise. The air brake by itself gets
+`brake.application_time` and `brake.release_time` (s, from the last command).
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from lmap.errors import KeyPath
-from lmap.procedures import drive_drawings
+from lmap.errors import InputProblem, KeyPath, Problem
+from lmap.procedures import drive_air_brake, drive_drawings
 from lmap.procedures.base import CaseFigures, settings
 from lmap.spec.case import Case, VehicleData, build, merged
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, Fact
+from lmap.view.model import table
 
 if TYPE_CHECKING:
     import polars as pl
@@ -33,6 +35,8 @@ UNITS: Mapping[str, str] = {
     "run.least_speed": "m/s",
     "run.deceleration": "m/s2",
     "run.movement": "m",
+    "run.time_to_speed": "s",
+    "run.distance_to_speed": "m",
     "brake.application_time": "s",
     "brake.release_time": "s",
 }
@@ -70,9 +74,9 @@ SETTINGS = Settings
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """One for each `[[test.case]]`."""
     test = settings(spec, Settings)
-    speeds = spec.run.speeds
+    speeds, profiles = spec.run.speeds or [], spec.run.wheel_profile or [vehicle.wheel_profile or ""]
+    _refuse_several(spec)
     start = speeds[0].resolve(vehicle.design_speed) if speeds else 0.0
-    profiles = spec.run.wheel_profile or [vehicle.wheel_profile or ""]
     found = []
     for variant in test.case:
         run = merged(
@@ -83,6 +87,20 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
         track = merged(spec.track, variant.track)
         found.append(build(label=variant.label, vehicle=vehicle, track=track, run=run))
     return found
+
+
+def _refuse_several(spec: Spec) -> None:
+    """Cases of several speeds or profiles would have one label."""
+    run = spec.run
+    written = {"speed": run.speed, "speed_kmh": run.speed_kmh, "wheel_profile": run.wheel_profile}
+    allowed = "one; a [[test.case]] may have its own speed_kmh, and wheel_profile in its run"
+    problems = [
+        Problem(key=("run", key), found=f"{len(values)} values", allowed=allowed)
+        for key, values in written.items()
+        if values is not None and len(values) > 1
+    ]
+    if problems:
+        raise InputProblem(problems)
 
 
 def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
@@ -109,43 +127,47 @@ def quantities(
     spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
 ) -> Mapping[str, pl.DataFrame]:
     """The frames with what each run came to."""
+    drives = {case.label: case.data["run"].get("drive", {}) for case in cases(spec, vehicle)}
+    brake = table(vehicle, "air_brake")
     return {
-        label: _with_sums(frame) if "v" in frame.columns else _with_times(frame)
+        label: _with_sums(frame, drives[label].get("until", {}))
+        if "v" in frame.columns
+        else _with_times(frame, drives[label], brake)
         for label, frame in frames.items()
     }
 
 
-def _with_times(frame: pl.DataFrame) -> pl.DataFrame:
-    """The air brake's times from the first change of the cylinder: to 95 % of its last pressure, to 5 % of its first.
-
-    NaN where it does not get there.
-    """
+def _with_times(frame: pl.DataFrame, drive: Mapping[str, Any], brake: Mapping[str, Any]) -> pl.DataFrame:
     import polars as pl
 
-    t, p = frame["t"].to_numpy(), frame["brake.cylinder"].to_numpy()
-    changed = (abs(p - p[0]) > 1e-6 * max(p.max(), 1.0)).nonzero()[0]
-    begin = float(t[max(int(changed[0]) - 1, 0)]) if changed.size else float("nan")
-    full, empty = (p >= 0.95 * p[-1]).nonzero()[0], (p <= 0.05 * p[0]).nonzero()[0]
-    applied = float(t[full[0]]) - begin if p[-1] > p[0] and full.size else float("nan")
-    released = float(t[empty[0]]) - begin if p[0] > p[-1] and empty.size else float("nan")
+    applied, released = drive_air_brake.times(frame, drive_air_brake.last_command(drive, brake))
     return frame.with_columns(
         pl.lit(applied).alias("brake.application_time"), pl.lit(released).alias("brake.release_time")
     )
 
 
-def _with_sums(frame: pl.DataFrame) -> pl.DataFrame:
+def _with_sums(frame: pl.DataFrame, until: Mapping[str, Any]) -> pl.DataFrame:
     import polars as pl
 
     t, s, v = pl.col("t"), pl.col("s"), pl.col("v")
-    duration = t.last() - t.first()
+    duration, distance = t.last() - t.first(), s.last() - s.first()
+    reached = _reached(until, float(frame["v"][-1]))
     return frame.with_columns(
         duration.alias("run.duration"),
-        (s.last() - s.first()).alias("run.distance"),
+        distance.alias("run.distance"),
         v.last().alias("run.final_speed"),
         v.min().alias("run.least_speed"),
         ((v.first() - v.last()) / duration).alias("run.deceleration"),
         (s - s.first()).abs().max().alias("run.movement"),
+        (duration if reached else pl.lit(float("nan"))).alias("run.time_to_speed"),
+        (distance if reached else pl.lit(float("nan"))).alias("run.distance_to_speed"),
     )
+
+
+def _reached(until: Mapping[str, Any], speed: float) -> bool:
+    """Whether the last speed, m/s, is one that ends the run."""
+    below, above = until.get("speed_below"), until.get("speed_above")
+    return (below is not None and speed <= below) or (above is not None and speed >= above)
 
 
 def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData) -> list[Drawing]:
@@ -154,7 +176,7 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
     published = {
         label: time
         for criterion in spec.criterion
-        if "run.duration" in criterion.signal
+        if {"run.duration", "run.time_to_speed"} & set(criterion.signal)
         for label, time in criterion.published.items()
     }
     return drive_drawings.drawings(quantities, runs, vehicle, published)

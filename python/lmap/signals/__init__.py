@@ -7,6 +7,7 @@ from lmap.signals.comfort import MeanComfort, Sperling, VibrationTotal, Weight
 from lmap.signals.filters import Bandpass, BandpassDominant, Lowpass, MovingMean, RemoveMean, Section, Skip
 from lmap.signals.statistic import (
     AveragePeak,
+    Last,
     MaxAbs,
     Maximum,
     Mean,
@@ -25,6 +26,7 @@ LINKS: tuple[type[Link], ...] = (
     AveragePeak,
     Bandpass,
     BandpassDominant,
+    Last,
     Lowpass,
     MaxAbs,
     Maximum,

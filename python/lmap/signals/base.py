@@ -141,6 +141,8 @@ def signal_of(frame: pl.DataFrame, name: str, factor: float = 1.0) -> pl.DataFra
     t, s, x = (columns[column].cast(pl.Float64).to_numpy() for column in ("t", "s", name))
     x = x * factor
     bad = ~(np.isfinite(t) & np.isfinite(s) & np.isfinite(x))
+    if bool(np.isnan(x).all()):
+        raise JudgementProblem(f"{name} has no value in this run")
     if bool(bad.any()):
         when = t[bad.argmax()]
         place = f", first at t = {when:.3f} s" if math.isfinite(when) else ""

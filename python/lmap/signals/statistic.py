@@ -184,6 +184,17 @@ class Minimum(Statistic):
         return Reading(at["x"], at["t"], at["s"])
 
 
+class Last(Statistic):
+    """x at the end of the run, or of a section: what has become of it."""
+
+    name: ClassVar[str] = "last"
+
+    def read(self, signal: pl.DataFrame) -> Reading:
+        """Value and its sample."""
+        at = signal.row(-1, named=True)
+        return Reading(at["x"], at["t"], at["s"])
+
+
 class Mean(Statistic):
     """Mean over the run."""
 

@@ -92,8 +92,9 @@ def load(path: Path, settings: Mapping[str, Any] | None = None) -> LoadedSpec:
     return LoadedSpec(document, spec, both, frozenset(given), variant)
 
 
-VARIANT = frozenset({"spec", "set", "must_fail"})
-"""Keys of a file that is another spec with some keys set otherwise, e.g. a bad twin (`must_fail`: what it fails in)."""
+VARIANT = frozenset({"spec", "set", "must_fail", "no_value"})
+"""Keys of a file that is another spec with some keys set otherwise, e.g. a bad twin (`must_fail`: what it fails in,
+`no_value`: what then cannot be said)."""
 
 
 def _documents(path: Path) -> tuple[toml.Document, toml.Document | None]:

@@ -58,6 +58,8 @@ pub(crate) struct Watching<'a, 'o> {
     overlaps: Vec<[usize; 2]>,
     seen: Vec<f64>,
     set: Vec<Option<f64>>,
+    /// Whether it has ever set anything.
+    acted: bool,
     slope: Vec<f64>,
 }
 
@@ -79,7 +81,8 @@ impl<'a, 'o> Watching<'a, 'o> {
         };
         let overlaps = overlaps(&outputs, system.model);
         let (seen, set) = (vec![0.0; sources.len()], vec![None; outputs.len()]);
-        Ok(Self { outside, sources, outputs, overlaps, seen, set, slope: vec![0.0; system.size()] })
+        let slope = vec![0.0; system.size()];
+        Ok(Self { outside, sources, outputs, overlaps, seen, set, acted: false, slope })
     }
 
     /// Asks the law at `t`, `x` and puts its answer into the equipment.
@@ -96,6 +99,7 @@ impl<'a, 'o> Watching<'a, 'o> {
             let allowed = "a control law that answers every time with finite numbers, no wheelset's twice";
             Error::input(Fault::new(KeyPath::of("controller"), found, allowed))
         })?;
+        self.acted |= self.set.iter().any(Option::is_some);
         if let Some(acting) = &mut system.acting {
             for (output, value) in self.outputs.iter().zip(&self.set) {
                 if let Some(value) = value {
@@ -104,6 +108,17 @@ impl<'a, 'o> Watching<'a, 'o> {
             }
         }
         Ok(())
+    }
+
+    /// After a run that reached its end: a law that never set anything was not what drove, the vehicle's own controllers were.
+    pub fn finish(&self) -> Result<()> {
+        if self.acted {
+            return Ok(());
+        }
+        let found = format!("{}, which set nothing in the whole run", self.outside.name);
+        let allowed =
+            "a control law that sets a torque or a brake at least once: does it return what it works out?";
+        Err(Error::input(Fault::new(KeyPath::of("controller"), found, allowed)))
     }
 
     fn check(&self) -> std::result::Result<(), String> {

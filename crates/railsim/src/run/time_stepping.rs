@@ -188,6 +188,9 @@ fn run(case: &Case, control: &dyn Control, outside: Option<&mut Outside<'_>>) ->
             return Err(Error::Interrupted);
         }
     };
+    if let (Some(watching), Ended::EndOfTrack | Ended::Complete) = (&watching, &ended) {
+        watching.finish()?;
+    }
     let counts = stepper.statistics();
     let statistics = serde_json::json!({
         "scheme": integrator.name(),
