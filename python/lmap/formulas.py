@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from lmap.errors import JudgementProblem
+
 CANT_BASE = 1.5
 """m between the rails' running lines, over which cant is measured on standard gauge."""
 
@@ -24,11 +26,22 @@ def p2_force(
     damping (N s/m) are those of one wheel and one rail.
 
         P2 = P0 + 2 alpha V sqrt(Mu/(Mu + Mt)) (1 - pi Ct/(4 sqrt(Kt (Mu + Mt)))) sqrt(Kt Mu)
+
+    A `JudgementProblem` from `p2_damping_limit` on: the bracket is the first order of a decay and would be negative.
     """
     both = unsprung_mass + track_mass
-    damped = 1.0 - math.pi * track_damping / (4.0 * math.sqrt(track_stiffness * both))
+    damped = 1.0 - track_damping / p2_damping_limit(unsprung_mass, track_mass, track_stiffness)
+    if damped <= 0.0:
+        raise JudgementProblem(
+            f"the formula of P2 holds for less damping of the track than {track_damping:g} N s/m"
+        )
     force = math.sqrt(unsprung_mass / both) * damped * math.sqrt(track_stiffness * unsprung_mass)
     return static + dip_angle * speed * force
+
+
+def p2_damping_limit(unsprung_mass: float, track_mass: float, track_stiffness: float) -> float:
+    """Damping of the track (N s/m) from which the formula of P2 gives no force: 4 sqrt(Kt (Mu + Mt))/pi."""
+    return 4.0 * math.sqrt(track_stiffness * (unsprung_mass + track_mass)) / math.pi
 
 
 def unbalanced_acceleration(deficiency: float, gravity: float, base: float = CANT_BASE) -> float:

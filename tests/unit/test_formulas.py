@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from lmap import formulas
+from lmap.errors import JudgementProblem
 
 GM_TT0088 = {"track_mass": 245.0, "track_stiffness": 62.0e6, "track_damping": 55.4e3}
 
@@ -28,6 +29,17 @@ def test_p2_of_the_seed_locomotive_on_the_track_of_gm_tt0088(
 
 def test_p2_without_a_dip_is_the_static_load() -> None:
     assert formulas.p2_force(static=1e5, dip_angle=0.0, speed=30.0, unsprung_mass=1425.0, **GM_TT0088) == 1e5
+
+
+@pytest.mark.parametrize("share", [1.0, 1.5, 100.0])
+def test_p2_refuses_a_track_so_damped_that_a_dip_would_take_load_off(share: float) -> None:
+    limit = formulas.p2_damping_limit(1425.0, 245.0, 62.0e6)
+    assert limit == pytest.approx(4.0 * math.sqrt(62.0e6 * 1670.0) / math.pi)
+    track = GM_TT0088 | {"track_damping": share * limit}
+    with pytest.raises(JudgementProblem, match="less damping of the track"):
+        formulas.p2_force(static=1e5, dip_angle=0.02, speed=30.0, unsprung_mass=1425.0, **track)
+    track = GM_TT0088 | {"track_damping": 0.999 * limit}
+    assert formulas.p2_force(static=1e5, dip_angle=0.02, speed=30.0, unsprung_mass=1425.0, **track) > 1e5
 
 
 def test_twist_of_en_14363_over_the_lengths_of_the_reference_locomotive() -> None:

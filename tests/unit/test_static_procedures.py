@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,16 @@ def test_friction_is_averaged_out() -> None:
         assert mean[k] == pytest.approx(max(-1.0, min(1.0, level)))
 
 
+def test_any_deficiency_within_the_bounds_has_a_cant_that_leaves_it() -> None:
+    speed, radius, gravity = 32.0, 800.0, 9.80665
+    low, high = sway.deficiencies(speed, radius, gravity)
+    assert sway.cant_for(speed, radius, low, gravity) == pytest.approx(0.3)
+    assert sway.cant_for(speed, radius, high, gravity) == pytest.approx(-0.3)
+    cant = sway.cant_for(speed, radius, 0.11, gravity)
+    left = speed**2 / radius * math.cos(math.asin(cant / 1.5)) - gravity * cant / 1.5
+    assert left == pytest.approx(gravity * 0.11 / 1.5)
+
+
 def test_the_steps_of_the_rig() -> None:
     outline = {
         "name": "x",
@@ -61,6 +72,10 @@ def test_the_steps_of_the_rig() -> None:
 ROOT = Path(__file__).resolve().parents[2]
 
 
+def _curve(**other: float) -> dict[str, float]:
+    return {"radius_m": 300.0, "cant_mm": 0.0, "unbalanced": 0.7} | other
+
+
 @pytest.mark.needs_core
 @pytest.mark.parametrize(
     ("spec", "settings_", "message"),
@@ -75,6 +90,41 @@ ROOT = Path(__file__).resolve().parents[2]
         ("sway_curve", {"test.deficiencies_mm": []}, "allowed: radius and deficiencies_mm"),
         ("heights", {"test.load_case": [{"label": "x", "spring_set": {"foo*": 0.01}}]}, 'found "foo\\*"'),
         ("heights", {"test.load_case": [{"label": "x", "condition": "no"}]}, "a condition of the vehicle"),
+        (
+            "p2",
+            {"test.track_damping": 55.4e6},
+            "test.track_damping: found 5.54e.07 N s/m; allowed: less than",
+        ),
+        ("coupler_forces", {"test.wheels_that_share": 7}, "test.wheels_that_share: found 7; allowed: 1 to 6"),
+        ("coupler_forces", {"test.radius": 5.0}, "coupler_forces.toml.*test.radius: found 5; allowed: 10 m"),
+        ("bogie_rotation", {"test.radius": 6.0}, "bogie_rotation.toml.*test.radius: found 6"),
+        (
+            "bogie_rotation",
+            {"test.conditions": ["half"]},
+            'test.conditions: found "half"; allowed: a condition',
+        ),
+        ("sway_rig", {"test.step_mm": 1e-5}, "at most 100 steps"),
+        ("sway_rig", {"test.cant_mm": 1600.0}, "test.cant_mm: found 1600"),
+        (
+            "sway_curve",
+            {"test.deficiencies_mm": [3000.0]},
+            "test.deficiencies_mm.0: found 3000 mm; allowed: -109 to",
+        ),
+        ("rollover", {"test.curves": [_curve(cant_mm=1600.0)]}, "test.curves.0.cant_mm: found 1600"),
+        (
+            "rollover",
+            {"test.curves": [_curve(radius_m=2.0)]},
+            "test.curves.0.radius_m: found 2; allowed: 10 m",
+        ),
+        (
+            "rollover",
+            {"test.curves": [_curve(radius_m=1e300, unbalanced=1e10)]},
+            "test.curves.0.radius_m: found 1e.300",
+        ),
+        ("rollover", {"test.transition_m": 1e9}, "rollover.toml.*test.transition_m"),
+        ("rollover", {"track.length": 50.0}, "track.length: found a length; allowed: none"),
+        ("flat_hump", {"track.length": 0}, "track.length: found 0; allowed: none beside test.end"),
+        ("flat_hump", {"run.start": 5.0}, "run.start: found 5.0; allowed: none beside test.start"),
         ("twist", {"vehicle": "wagon2", "condition": "loaded"}, "wagon2"),
         ("twist", {"run.speed_kmh": [1.0, 2.0]}, "allowed: one speed"),
         ("twist", {"test.loops": ["all"]}, "test.loops"),

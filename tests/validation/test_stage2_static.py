@@ -145,6 +145,43 @@ def test_x_factor_of_a_linear_bogie(radius: float, x: float, compare: Compare) -
     compare(f"X factor, R {radius:g} m", moment / (3.8 * 2.0 * WHEEL_LOAD), x, 0.001, ANNEX_E)
 
 
+def test_the_moment_in_the_curve_is_that_of_the_springs_and_of_the_loop(compare: Compare) -> None:
+    """2C.4b (a): what all connections put on the frame in the curve, beside the springs and the loop at that angle."""
+    found = judged("bogie_rotation", **{"test.rate": 0.0})
+    for condition, load in (("tare", 126.0), ("full", 134.0)):
+        curve = f"curve, 40 km/h, {condition}"
+        moment, angle = found["moment", curve], found["angle of the bogie under the body", curve]
+        compare(
+            f"moment, {condition}, kN m",
+            moment,
+            1.1475 * angle,
+            0.15,
+            "the secondary springs, times the angle",
+        )
+        loop = found["moment of the standing loop at the angle in the curve", curve]
+        compare(f"moment, {condition}, beside the loop, kN m", moment, loop, 0.15, "the loop at the angle")
+        x = moment / (3.8 * load * G / 6.0)
+        compare(f"X factor, {condition}", found["X factor, in the curve", curve], x, 1e-9, "M/(2a 2Q0)")
+
+
+def test_the_moment_on_a_turned_bogie_is_what_holds_it_there() -> None:
+    """`yaw_moment` by its sign: springs turn back what the reaction holds."""
+    held = [f"carbody.{part}" for part in ("x", "y", "z", "phi", "theta", "psi")]
+    load = [{"kind": "displacement", "coordinate": "bogie1.psi", "path": [0.0, 0.04]}]
+    run = {
+        "kind": "quasi_static",
+        "speed": 0.0,
+        "contact": ROLLERS,
+        "load": load,
+        "load_steps": 1,
+        "hold": held,
+    }
+    frame = ran(run)
+    assert frame["bogie1.yaw_moment"][-1] == pytest.approx(-1.1475e6 * 0.04, rel=1e-3)
+    assert frame["bogie1.yaw_moment"][-1] == pytest.approx(-frame["bogie1.psi.reaction_moment"][-1], rel=1e-4)
+    assert abs(frame["bogie2.yaw_moment"][-1]) < 50.0
+
+
 def test_the_moment_in_a_curve_hangs_on_the_angle_alone(compare: Compare) -> None:
     """What (a) of 2C.4b rests on: 20 mm of sway beside 36 mrad of yaw leave the moment of the loop as it is."""
     angle = 0.036
@@ -165,7 +202,7 @@ def test_the_moment_in_a_curve_hangs_on_the_angle_alone(compare: Compare) -> Non
 def test_yaw_dampers_add_their_share_at_a_degree_per_second(compare: Compare) -> None:
     slow = judged("bogie_rotation", **{"test.rate": 0.0})
     stated = judged("bogie_rotation")
-    added = stated["moment", "standing"] - slow["moment", "standing"]
+    added = stated["moment", "standing, tare"] - slow["moment", "standing, tare"]
     # 6.8 kN m of the yaw dampers; the secondary springs' own damping is another 0.27
     compare("moment of the dampers at 1 deg/s, kN m", added, 6.84 + 0.27, 0.02, ANNEX_E)
 

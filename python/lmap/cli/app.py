@@ -67,6 +67,7 @@ def main() -> NoReturn:
     """Entry point of the `lmap` script."""
     try:
         code = app(standalone_mode=False)
+        sys.stdout.flush()
         if code == EXIT_INTERRUPTED:
             raise KeyboardInterrupt  # typer turns it into a code
     except LmapError as error:
@@ -78,6 +79,13 @@ def main() -> NoReturn:
     except BrokenPipeError:
         # whoever read stdout has left: nothing more to say, and nothing to flush at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _leave(EXIT_ERROR)
+    except OSError as error:
+        if error.filename is not None:  # of a file, which whoever opens it tells about
+            traceback.print_exc()
+        else:
+            _say(f"stdout: {error.strerror}")
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         _leave(EXIT_ERROR)
     except SystemExit:
         raise

@@ -178,6 +178,28 @@ def at_rest(spec: Spec, vehicle: VehicleData, run: Mapping[str, Any] | None = No
     return cases
 
 
+def in_condition(
+    case: Case, condition: str | None, vehicle: VehicleData, key: KeyPath, *, label: str
+) -> Case:
+    """A case under another label in a condition of the vehicle that `key` names; its own where that is None."""
+    if condition is None:
+        return Case(label, {**case.data, "label": label})
+    if vehicle.conditions and condition not in vehicle.conditions:
+        allowed = "a condition of the vehicle: " + ", ".join(vehicle.conditions)
+        raise InputProblem(Problem(key=key, found=f'"{condition}"', allowed=allowed))
+    return Case(label, {**case.data, "label": label, "condition": condition})
+
+
+MOST_CANT_MM = 300.0
+"""mm of cant that any `[test]` may ask for: the core's own limit."""
+
+
+def origin_of_curve(key: KeyPath) -> KeyPath:
+    """A key of a case whose layout is one curve, as `[test]` writes it: `radius`, `cant_mm`."""
+    own = key[:2] == ("track", "layout") and key[-1] in ("radius", "cant_mm")
+    return ("test", key[-1]) if own else key
+
+
 def wheelsets(columns: Iterable[str]) -> list[str]:
     """Names of the wheelsets among a frame's columns, in their order: those with wheel forces."""
     return [name.removesuffix(".left.Q") for name in columns if name.endswith(".left.Q")]

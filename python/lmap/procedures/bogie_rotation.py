@@ -5,10 +5,16 @@
 without friction or guidance, as on turntables (`run.contact`: textbook). What holds it is the moment of springs and
 friction; the dampers' share at `rate` is added from their damping.
 
-(a) `curve`: the vehicle runs through that curve at the speeds of the spec, in balance; the angle that the leading bogie
-has there under the body stands in place of the geometric one. Its moment is read from the loop.
+(a) `curve`: the vehicle runs through that curve at the speeds of the spec, in balance; the moment is what all
+connections between them put on the leading bogie frame there by the body. Nothing turns at a rate in the full curve:
+the dampers' share is added as in the loop. The loop at the same angle stands beside it, and has what friction adds:
+a balance that was not led to its place leaves friction elements without force.
 
-Columns: `angle` (rad) of the bogie against the body, `moment` (N m) with the dampers' share, `x_factor`.
+Moments are about the vertical axis through the frame's centre of mass. With `conditions` all of it is done in each, and
+the labels end with its name.
+
+Columns: `angle` (rad) of the bogie against the body, `moment` (N m) with the dampers' share, `x_factor`; in the curve
+`loop_moment` and `loop_x_factor` too, the loop's at that angle.
 """
 
 from __future__ import annotations
@@ -20,10 +26,18 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from lmap.errors import InputProblem, JudgementProblem, Problem
+from lmap.errors import InputProblem, JudgementProblem, KeyPath, Problem
 from lmap.formulas import x_factor
 from lmap.procedures.axles import Bogie, two_bogies
-from lmap.procedures.base import CaseFigures, at_rest, expand, settings
+from lmap.procedures.base import (
+    MOST_CANT_MM,
+    CaseFigures,
+    at_rest,
+    expand,
+    in_condition,
+    origin_of_curve,
+    settings,
+)
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, DrawnCurve, Fact
@@ -34,9 +48,15 @@ if TYPE_CHECKING:
 
 NAME = "bogie_rotation"
 SUMMARY = "moment that turns a bogie under the body, standing and in a curve, over wheelbase and axle load"
-UNITS: Mapping[str, str] = {"angle": "rad", "moment": "N m", "x_factor": "1"}
+UNITS: Mapping[str, str] = {
+    "angle": "rad",
+    "moment": "N m",
+    "x_factor": "1",
+    "loop_moment": "N m",
+    "loop_x_factor": "1",
+}
 
-STANDING, REST = "standing", "at rest"
+STANDING, REST, CURVE = "standing", "at rest", "curve"
 # Rollers: no conicity, so that nothing centres the axles; their creep coefficients are not used at rest.
 _ROLLERS = {
     "kind": "textbook",
@@ -52,16 +72,18 @@ _ROLLERS = {
 class Settings(BaseModel):
     """`[test]`."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     radius: float = Field(gt=0.0, allow_inf_nan=False)
     """Of the smallest curve, m."""
-    cant_mm: float = Field(default=0.0, ge=0.0)
+    cant_mm: float = Field(default=0.0, ge=0.0, le=MOST_CANT_MM)
     """Of that curve, where the vehicle runs through it."""
     rate: float = Field(ge=0.0, allow_inf_nan=False)
     """At which the bogie is turned, rad/s: what yaw dampers add hangs on it."""
     steps: int = Field(ge=1, le=100)
     """Load steps from straight to the full angle."""
+    conditions: list[str] = Field(default_factory=list)
+    """Conditions of the vehicle; the spec's own where none is given."""
 
 
 SETTINGS = Settings
@@ -73,7 +95,7 @@ def turned(test: Settings, bogies: tuple[Bogie, Bogie]) -> float:
 
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
-    """The loop, the vehicle at rest for its axle load, and the curve at each speed."""
+    """The loop, the vehicle at rest for its axle load, and the curve at each speed; all of them in each condition."""
     test, model = settings(spec, Settings), resolved(vehicle)
     front, rear = two_bogies(model)
     if len(spec.run.wheel_profile or [""]) != 1:
@@ -88,14 +110,37 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     own = {"kind": "quasi_static", "load": load, "load_steps": test.steps, "hold": held, "contact": _ROLLERS}
     run: dict[str, Any] = {**rest.data["run"], **own}
     found.append(build(label=STANDING, vehicle=vehicle, track=spec.track, run=run))
-    if spec.run.speeds is not None:
-        length = float(spec.track["length"])
-        curve = {"kind": "curve", "length": length, "radius": test.radius, "cant_mm": test.cant_mm}
-        for case in expand(spec, vehicle, kind="equilibrium"):
-            track = {**spec.track, "layout": [curve]}
-            label = f"curve, {float(case.data['run']['speed']) * 3.6:.6g} km/h"
-            found.append(build(label=label, vehicle=vehicle, track=track, run=case.data["run"]))
+    found += _curves(spec, vehicle, test)
+    names = dict.fromkeys(test.conditions) or [None]
+    return [
+        in_condition(case, name, vehicle, ("test", "conditions"), label=f"{case.label}{_of(name)}")
+        for name in names
+        for case in found
+    ]
+
+
+def _of(condition: str | None) -> str:
+    """What the labels of a condition end with."""
+    return f", {condition}" if condition else ""
+
+
+def _curves(spec: Spec, vehicle: VehicleData, test: Settings) -> list[Case]:
+    """The curve, in balance, at each speed; none without a speed."""
+    if spec.run.speeds is None:
+        return []
+    length = float(spec.track["length"])
+    curve = {"kind": "curve", "length": length, "radius": test.radius, "cant_mm": test.cant_mm}
+    track = {**spec.track, "layout": [curve]}
+    found = []
+    for case in expand(spec, vehicle, kind="equilibrium"):
+        label = f"{CURVE}, {float(case.data['run']['speed']) * 3.6:.6g} km/h"
+        found.append(build(label=label, vehicle=vehicle, track=track, run=case.data["run"]))
     return found
+
+
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """The curve is written in `[test]`."""
+    return origin_of_curve(key) if label.startswith(CURVE) else key
 
 
 def yaw_damping(model: Model, bogie: Bogie) -> float:
@@ -136,45 +181,45 @@ def _damping(connection: Connection, centre: float) -> float:
 def quantities(
     spec: Spec, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData
 ) -> Mapping[str, pl.DataFrame]:
-    """The loop, and a row for each curve."""
+    """The loop, and a row for each curve; in each condition."""
+    test = settings(spec, Settings)
+    found: dict[str, pl.DataFrame] = {}
+    for condition in dict.fromkeys(test.conditions) or [None]:
+        found |= _judged(test, frames, vehicle, _of(condition))
+    return found
+
+
+def _judged(
+    test: Settings, frames: Mapping[str, pl.DataFrame], vehicle: VehicleData, ending: str
+) -> dict[str, pl.DataFrame]:
+    """The loop and the curves of the cases whose labels end so."""
     import polars as pl
 
-    test, model = settings(spec, Settings), resolved(vehicle)
+    model = resolved(vehicle)
     front, _rear = two_bogies(model)
-    if STANDING not in frames or REST not in frames:
-        raise JudgementProblem("the standing vehicle has no result")
-    axle = [
-        sum(float(frames[REST][f"{one.name}.{side}.Q"][0]) for side in ("left", "right"))
-        for one in front.axles
-    ]
-    load = sum(axle) / len(axle)
-    loop, frame = frames[STANDING], front.frame.name
+    standing, rest = f"{STANDING}{ending}", f"{REST}{ending}"
+    if standing not in frames or rest not in frames:
+        raise JudgementProblem(f"the standing vehicle{ending} has no result")
+    wheels = [f"{one.name}.{side}.Q" for one in front.axles for side in ("left", "right")]
+    load = sum(float(frames[rest][wheel][0]) for wheel in wheels) / len(front.axles)
+    loop, frame = frames[standing], front.frame.name
     angle = loop[f"{frame}.psi"] - loop[f"{frame}.psi"][0]
     holds = loop[f"{frame}.psi.reaction_moment"]
     added = yaw_damping(model, front) * test.rate
-    x = (holds.abs() + added) / (front.wheelbase * load)
-    found = {
-        STANDING: pl.DataFrame(
-            {
-                "step": loop["step"],
-                "s": loop["s"],
-                "angle": angle,
-                "moment": holds.sign() * (holds.abs() + added),
-                "x_factor": x,
-            }
-        )
-    }
+    whole = holds.abs() + added
+    columns = {"step": loop["step"], "s": loop["s"], "angle": angle, "moment": holds.sign() * whole}
+    found = {standing: pl.DataFrame({**columns, "x_factor": whole / (front.wheelbase * load)})}
     for label, ran in frames.items():
-        if label in (STANDING, REST):
+        if not (label.startswith(CURVE) and label.endswith(ending)):
             continue
         bent = float(ran["curvature"][0]) * (front.centre - model.bodies[0].position[0])
         yaw = abs(float(ran[f"{model.bodies[0].name}.psi"][0]) - float(ran[f"{frame}.psi"][0]) - bent)
-        moment = _at(angle.to_list(), holds.to_list(), yaw) + added
-        row = {"step": 0.0, "s": float(ran["s"][0]), "angle": yaw, "moment": moment}
-        found[label] = pl.DataFrame(
-            {name: [value] for name, value in row.items()}
-            | {"x_factor": [x_factor(moment, front.wheelbase, load)]}
-        )
+        moment = abs(float(ran[f"{frame}.yaw_moment"][0])) + added
+        read = _at(angle.to_list(), holds.to_list(), yaw) + added
+        row = {"step": 0.0, "s": float(ran["s"][0]), "angle": yaw, "moment": moment, "loop_moment": read}
+        row["x_factor"] = x_factor(moment, front.wheelbase, load)
+        row["loop_x_factor"] = x_factor(read, front.wheelbase, load)
+        found[label] = pl.DataFrame({name: [value] for name, value in row.items()})
     return found
 
 
@@ -191,10 +236,14 @@ def _at(angles: Sequence[float], moments: Sequence[float], angle: float) -> floa
 
 
 def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: VehicleData) -> list[Drawing]:
-    """Moment over angle."""
-    loop = quantities.get(STANDING)
-    if loop is None or "moment" not in loop.columns:
-        return []
+    """Moment over angle, a drawing for each condition."""
+    conditions = dict.fromkeys(settings(spec, Settings).conditions) or [None]
+    return [_drawn(spec, quantities, _of(one)) for one in conditions if f"{STANDING}{_of(one)}" in quantities]
+
+
+def _drawn(spec: Spec, quantities: Mapping[str, pl.DataFrame], ending: str) -> Drawing:
+    standing = f"{STANDING}{ending}"
+    loop = quantities[standing]
     curves = [
         DrawnCurve(
             name="turned in steps",
@@ -202,15 +251,17 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
             y=[v / 1e3 for v in loop["moment"].to_list()],
         )
     ]
+    # the point of a curve on the side to which the loop goes first
+    side = -1.0 if loop["moment"][1] < 0.0 else 1.0
     curves += [
         DrawnCurve(
-            name=label,
+            name=label.removesuffix(ending),
             x=[1e3 * float(row["angle"][0])],
-            y=[-float(row["moment"][0]) / 1e3 if loop["moment"][1] < 0.0 else float(row["moment"][0]) / 1e3],
+            y=[side * float(row["moment"][0]) / 1e3],
             role="points",
         )
         for label, row in quantities.items()
-        if label != STANDING
+        if label.startswith(CURVE) and label.endswith(ending)
     ]
     reach = [1e3 * float(loop["angle"].min()), 1e3 * float(loop["angle"].max())]  # type: ignore[arg-type]
     share = next((m / x for m, x in loop.select("moment", "x_factor").iter_rows() if x > 0.0), None)
@@ -219,18 +270,16 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
             name=f"X factor {one.max:g}", x=reach, y=[side * one.max * abs(share) / 1e3] * 2, role="limit"
         )
         for one in spec.criterion
-        if share is not None and one.max is not None and one.applies_to(STANDING)
+        if share is not None and one.max is not None and one.applies_to(standing)
         for side in (-1.0, 1.0)
     ]
-    return [
-        Drawing(
-            title="Rotation of the leading bogie",
-            x_label="angle under the body (mrad)",
-            y_label="moment, with the dampers' share (kN m)",
-            curves=tuple(curves),
-            caption="Turned to one side, to the other and back; without friction the branches are one line.",
-        )
-    ]
+    return Drawing(
+        title=f"Rotation of the leading bogie{ending}",
+        x_label="angle under the body (mrad)",
+        y_label="moment, with the dampers' share (kN m)",
+        curves=tuple(curves),
+        caption="Turned to one side, to the other and back; without friction the branches are one line.",
+    )
 
 
 def facts(spec: Spec, figures: Sequence[CaseFigures]) -> list[Fact]:

@@ -20,7 +20,15 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from lmap.errors import InputProblem, JudgementProblem, KeyPath, Problem
 from lmap.formulas import coupler_angle, coupler_unloading
-from lmap.procedures.base import CaseFigures, at_rest, settings, unloading_units, with_unloading
+from lmap.procedures.base import (
+    MOST_CANT_MM,
+    CaseFigures,
+    at_rest,
+    origin_of_curve,
+    settings,
+    unloading_units,
+    with_unloading,
+)
 from lmap.spec.case import Case, VehicleData, build, merged
 from lmap.spec.model import Spec
 from lmap.verdict import Drawing, DrawnCurve, Fact
@@ -56,18 +64,18 @@ class Stepped(BaseModel):
 class Settings(BaseModel):
     """`[test]`."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     radius: float = Field(gt=0.0, allow_inf_nan=False)
     """Of the curve, to the right, m."""
-    cant_mm: float = Field(default=0.0, ge=0.0)
+    cant_mm: float = Field(default=0.0, ge=0.0, le=MOST_CANT_MM)
     """Of the curve."""
     force: float = Field(gt=0.0, allow_inf_nan=False)
     """Along the couplers at both ends, N."""
     ways: list[Literal["draft", "buff"]] = Field(default_factory=list)
     """Which ways are brought to balance in the curve."""
     wheels_that_share: int = Field(gt=0)
-    """Wheels on one rail over which the formula shares what is lost at one end."""
+    """Wheels on one rail over which the formula shares what is lost at one end; at most all that the vehicle has."""
     shank: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
     """From a coupler's pivot to its pulling face, m; only runs in time need it."""
     build_up_s: float = Field(default=5.0, gt=0.0, allow_inf_nan=False)
@@ -90,6 +98,7 @@ SETTINGS = Settings
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """The vehicle at rest on level track, a case for each way in which the couplers push, then the runs in time."""
     test, model = settings(spec, Settings), resolved(vehicle)
+    _check_shares(test, model)
     [rest] = at_rest(spec, vehicle)
     speeds = spec.run.speeds
     if speeds is None or len(speeds) != 1:
@@ -115,8 +124,17 @@ def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
 
 
 def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
-    """The shank is written in `[test]`."""
-    return ("test", "shank") if key == ("run", "couplers", "shank") else key
+    """The shank, and the curve of the balances, are written in `[test]`."""
+    if key == ("run", "couplers", "shank"):
+        return ("test", "shank")
+    return origin_of_curve(key) if label in settings(spec, Settings).ways else key
+
+
+def _check_shares(test: Settings, model: Model) -> None:
+    most = len(model.wheelsets)
+    if test.wheels_that_share > most:
+        key, found = ("test", "wheels_that_share"), str(test.wheels_that_share)
+        raise InputProblem(Problem(key=key, found=found, allowed=f"1 to {most}, the wheels on one rail"))
 
 
 def _couplers(test: Settings, one: Stepped) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from lmap.errors import InputProblem, Problem
 from lmap.outline import Clearance, Points, clearance, closed, displaced
+from lmap.procedures.base import in_condition
 from lmap.spec.case import Case, VehicleData, build
 from lmap.verdict import DrawnCurve
 from lmap.view.model import Connection, Model
@@ -64,12 +65,7 @@ def case_of_load(
 ) -> Case:
     """A case in the condition of a load case."""
     case = build(label=label, vehicle=vehicle, track=track, run=run)
-    if load.condition is None:
-        return case
-    if vehicle.conditions and load.condition not in vehicle.conditions:
-        allowed = "a condition of the vehicle: " + ", ".join(vehicle.conditions)
-        raise InputProblem(Problem(key=("test", "load_case"), found=f'"{load.condition}"', allowed=allowed))
-    return Case(label, {**case.data, "condition": load.condition})
+    return in_condition(case, load.condition, vehicle, ("test", "load_case"), label=label)
 
 
 def set_loads(load: LoadCase, model: Model, rows: int) -> list[dict[str, Any]]:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from lmap.errors import JudgementProblem
-from lmap.formulas import p2_force
+from lmap.errors import InputProblem, JudgementProblem, Problem
+from lmap.formulas import p2_damping_limit, p2_force
 from lmap.procedures.base import CaseFigures, expand, settings, wheelsets
 from lmap.spec.case import Case, VehicleData, build
 from lmap.spec.model import Spec
@@ -33,7 +33,7 @@ UNITS: Mapping[str, str] = {}
 class Settings(BaseModel):
     """`[test]`; the track's numbers are those of one rail."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     dip_angle: float = Field(gt=0.0, lt=0.2)
     """Whole angle 2 alpha between the rail ends, rad."""
@@ -52,7 +52,13 @@ SETTINGS = Settings
 
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """A run, or the standing vehicle, for each speed and wheel profile."""
-    rolling = expand(spec, vehicle)
+    test, rolling = settings(spec, Settings), expand(spec, vehicle)
+    for mass in _unsprung(test, vehicle).values():
+        limit = p2_damping_limit(mass, test.track_mass, test.track_stiffness)
+        if not test.track_damping < limit:
+            found = f"{test.track_damping:g} N s/m"
+            allowed = f"less than 4 sqrt(Kt (Mu + Mt))/pi, {limit:.4g} N s/m: from there on the formula has no force"
+            raise InputProblem(Problem(key=("test", "track_damping"), found=found, allowed=allowed))
     if "integrator" in spec.run.rest:
         return rolling
     return [
@@ -78,7 +84,7 @@ def quantities(
     import polars as pl
 
     test = settings(spec, Settings)
-    masses = {body.name: body.mass for body in resolved(vehicle).wheelsets}
+    masses = _unsprung(test, vehicle)
     speeds = {
         case.label: speed for case, speed in zip(cases(spec, vehicle), _speeds(spec, vehicle), strict=True)
     }
@@ -94,7 +100,7 @@ def quantities(
                     static=0.0,
                     dip_angle=test.dip_angle,
                     speed=speeds[label],
-                    unsprung_mass=masses[name] / 2.0 + test.motor_mass_per_wheel,
+                    unsprung_mass=masses[name],
                     track_mass=test.track_mass,
                     track_stiffness=test.track_stiffness,
                     track_damping=test.track_damping,
@@ -102,6 +108,11 @@ def quantities(
                 added.append((pl.col(f"{name}.{side}.Q").first() + dynamic).alias(f"{name}.{side}.P2"))
         found[label] = frame.with_columns(added)
     return found
+
+
+def _unsprung(test: Settings, vehicle: VehicleData) -> dict[str, float]:
+    """Unsprung mass of a wheel of each wheelset, kg."""
+    return {body.name: body.mass / 2.0 + test.motor_mass_per_wheel for body in resolved(vehicle).wheelsets}
 
 
 def _speeds(spec: Spec, vehicle: VehicleData) -> list[float]:

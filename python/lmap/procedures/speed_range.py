@@ -71,8 +71,21 @@ def drawings(spec: Spec, quantities: Mapping[str, pl.DataFrame], vehicle: Vehicl
 def cases(spec: Spec, vehicle: VehicleData) -> list[Case]:
     """A run for every wheel profile and speed, then the vehicle at rest."""
     own = settings(spec, Settings)
+    _check_given_once(spec, own)
     runs = [_placed(case, own) for case in expand(spec, vehicle)]
     return [stepped(case, own.slow) for case in runs] + wheel_forces.static_cases(spec, vehicle)
+
+
+def _check_given_once(spec: Spec, own: Settings) -> None:
+    """Where `[test]` says where runs begin and end, nothing else does."""
+    given = (
+        (own.start, spec.run.rest, ("run", "start"), "test.start"),
+        (own.end, spec.track, ("track", "length"), "test.end"),
+    )
+    for place, table, key, said in given:
+        if place is not None and key[1] in table:
+            allowed = f"none beside {said}, which says it for each speed"
+            raise InputProblem(Problem(key=key, found=f"{table[key[1]]}", allowed=allowed))
 
 
 def _placed(case: Case, own: Settings) -> Case:

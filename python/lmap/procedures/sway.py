@@ -17,16 +17,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from lmap.criteria.units import STANDARD_GRAVITY
-from lmap.errors import InputProblem, Problem
+from lmap.errors import InputProblem, KeyPath, Problem
 from lmap.formulas import CANT_BASE, throw_centre, throw_end, unbalanced_acceleration
 from lmap.outline import closed
 from lmap.procedures.axles import two_bogies
-from lmap.procedures.base import CaseFigures, expand, settings
+from lmap.procedures.base import MOST_CANT_MM, CaseFigures, expand, origin_of_curve, settings
 from lmap.procedures.displaced import LoadCase, Outline, case_of_load, drawn, section, set_loads, worst
 from lmap.spec.case import Case, VehicleData
 from lmap.spec.model import Spec
@@ -48,10 +48,14 @@ UNITS: Mapping[str, str] = {
 }
 
 
+MOST_STEPS = 100
+"""Of the rig, from level to the largest cant."""
+
+
 class Settings(BaseModel):
     """`[test]`."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     where: Literal["rig", "curve", "standing"]
     """On the cant test rig, running in a curve, or standing on cant."""
@@ -59,7 +63,7 @@ class Settings(BaseModel):
     """By name in a spec: models/outlines."""
     load_case: list[LoadCase] = Field(min_length=1)
     """The states of the vehicle."""
-    cant_mm: float = Field(default=0.0, ge=0.0, le=300.0)
+    cant_mm: float = Field(default=0.0, ge=0.0, le=MOST_CANT_MM)
     """Rig and standing: the largest."""
     step_mm: float = Field(default=10.0, gt=0.0)
     """Rig: from one step to the next."""
@@ -67,6 +71,12 @@ class Settings(BaseModel):
     """Curve: m, to the right."""
     deficiencies_mm: list[float] = Field(default_factory=list)
     """Curve: cant deficiencies."""
+
+    @model_validator(mode="after")
+    def _not_too_many_steps(self) -> Self:
+        if self.cant_mm > MOST_STEPS * self.step_mm:
+            raise ValueError(f"a step_mm that makes at most {MOST_STEPS} steps of cant_mm")
+        return self
 
 
 SETTINGS = Settings
@@ -128,12 +138,25 @@ def _states(
         allowed = "radius and deficiencies_mm"
         raise InputProblem(Problem(key=("test",), found='where = "curve" without them', allowed=allowed))
     found = []
-    for deficiency in test.deficiencies_mm:
+    for number, deficiency in enumerate(test.deficiencies_mm):
+        low, high = deficiencies(speed, test.radius, gravity)
+        if not low <= deficiency / 1e3 <= high:
+            between = f"{1e3 * low:.0f} to {1e3 * high:.0f} mm at this speed and radius"
+            allowed = f"{between}: a cant of {MOST_CANT_MM:g} mm at most"
+            key = ("test", "deficiencies_mm", number)
+            raise InputProblem(Problem(key=key, found=f"{deficiency:g} mm", allowed=allowed))
         cant = cant_for(speed, test.radius, deficiency / 1e3, gravity)
         layout = [{"kind": "curve", "length": length, "radius": test.radius, "cant_mm": 1e3 * cant}]
         name = f"{load.label}, {deficiency:g} mm"
         found.append((name, {**spec.track, "layout": layout}, set_loads(load, model, 1)))
     return found
+
+
+def deficiencies(speed: float, radius: float, gravity: float) -> tuple[float, float]:
+    """Cant deficiency, m, on the largest cant and on as much to the other side."""
+    free, sine = speed**2 / radius, MOST_CANT_MM / 1e3 / CANT_BASE
+    level, lowered = free * math.sqrt(1.0 - sine * sine), gravity * sine
+    return (level - lowered) * CANT_BASE / gravity, (level + lowered) * CANT_BASE / gravity
 
 
 def cant_for(speed: float, radius: float, deficiency: float, gravity: float) -> float:
@@ -142,6 +165,11 @@ def cant_for(speed: float, radius: float, deficiency: float, gravity: float) -> 
     # free cos c - gravity sin c = wanted, exactly
     angle = math.atan2(free, gravity) - math.asin(wanted / math.hypot(free, gravity))
     return CANT_BASE * math.sin(angle)
+
+
+def origin(spec: Spec, label: str, key: KeyPath) -> KeyPath:
+    """Track that is written in `[test]`."""
+    return origin_of_curve(key) if settings(spec, Settings).where != "rig" else key
 
 
 def quantities(

@@ -121,10 +121,7 @@ pub(super) fn tell_apart(modes: &mut [Mode]) {
 
 fn groups(model: &Model, shape: &[Complex<f64>]) -> [Group; 5] {
     let map = model.map();
-    let heaviest = (0..map.bodies).max_by(|a, b| model.rigid(*a).mass.total_cmp(&model.rigid(*b).mass));
-    let on_axle = |i: usize| {
-        model.links.iter().any(|l| (l.a == i && l.b >= map.bodies) || (l.b == i && l.a >= map.bodies))
-    };
+    let car = model.car_body();
     let group = |what, members| Group { what, members };
     let mut all = [
         group("car body", Vec::new()),
@@ -136,8 +133,8 @@ fn groups(model: &Model, shape: &[Complex<f64>]) -> [Group; 5] {
     for i in 0..model.count() {
         let at = match i {
             _ if i >= map.bodies => 3,
-            _ if Some(i) == heaviest => 0,
-            _ if on_axle(i) => 1,
+            _ if Some(i) == car => 0,
+            _ if model.carried_by_axles(i) => 1,
             _ => 2,
         };
         all[at].members.push(member(model, i, shape));
@@ -179,13 +176,13 @@ const CARRIED: f64 = 4.0;
 fn follows(model: &Model, speed: f64, shape: &[Complex<f64>]) -> bool {
     let map = model.map();
     let (mut sliding, mut lateral, mut axles, mut above) = (0.0, 0.0, 0.0, 0.0);
-    let heaviest = (0..map.bodies).max_by(|a, b| model.rigid(*a).mass.total_cmp(&model.rigid(*b).mass));
+    let car = model.car_body();
     for i in map.bodies..model.count() {
         let (vy, psi) = (shape[map.u(i).start + Y], shape[map.q(i).start + PSI]);
         sliding += (vy - speed * psi).norm_sqr();
         lateral += vy.norm_sqr();
         axles += shape[map.q(i).start + Y].norm_sqr();
-        if let Some(car) = heaviest {
+        if let Some(car) = car {
             let (q, apart) = (map.q(car).start, model.rigid(i).position.x - model.rigid(car).position.x);
             above += (shape[q + Y] + shape[q + PSI] * apart).norm_sqr();
         }

@@ -37,6 +37,12 @@ pub struct Link {
 }
 
 impl Link {
+    /// Whether it is between these two, either way.
+    #[must_use]
+    pub fn joins(&self, one: usize, other: usize) -> bool {
+        (self.a, self.b) == (one, other) || (self.b, self.a) == (one, other)
+    }
+
     /// The motion as the connection's own axes see it.
     #[inline]
     fn seen(motion: &Relative, R: &Mat3) -> Relative {
@@ -266,6 +272,19 @@ impl Model {
     #[must_use]
     pub fn rigid(&self, i: usize) -> &RigidBody {
         if i < self.bodies.len() { &self.bodies[i] } else { &self.wheelsets[i - self.bodies.len()].body }
+    }
+
+    /// The heaviest of the bodies that are no wheelsets.
+    #[must_use]
+    pub fn car_body(&self) -> Option<usize> {
+        (0..self.bodies.len()).max_by(|a, b| self.bodies[*a].mass.total_cmp(&self.bodies[*b].mass))
+    }
+
+    /// Whether a connection ties body `i` to a wheelset.
+    #[must_use]
+    pub fn carried_by_axles(&self, i: usize) -> bool {
+        let is_axle = |at: usize| at >= self.bodies.len();
+        self.links.iter().any(|l| (l.a == i && is_axle(l.b)) || (l.b == i && is_axle(l.a)))
     }
 
     /// Number of bodies and wheelsets.

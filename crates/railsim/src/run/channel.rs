@@ -18,7 +18,7 @@ pub struct Channel {
 }
 
 /// Last part of a name, unit, meaning. Sorted by name.
-const PARTS: [(&str, &str, &str); 72] = [
+const PARTS: [(&str, &str, &str); 73] = [
     ("Fx", "N", "longitudinal creep force on the wheel, + forward"),
     ("LV", "1", "lateral over vertical wheel force, Y/Q"),
     ("N_flange", "N", "normal force on the flange, all contacts there"),
@@ -98,6 +98,11 @@ const PARTS: [(&str, &str, &str); 72] = [
     ("x", "m", "place along the track relative to the vehicle's place"),
     ("y", "m", "lateral displacement from the track centre line, + right"),
     ("yaw", "rad", "coupler against the car body, sideways, + where it leads to the vehicle's right"),
+    (
+        "yaw_moment",
+        "N m",
+        "moment of the car body on a bogie frame about the frame's vertical axis, + nose right",
+    ),
     ("z", "m", "height: depth below the top of rail, negative above"),
 ];
 
@@ -127,6 +132,8 @@ pub(crate) enum Source {
     SensorPlace(usize, usize),
     SensorAcceleration(usize, usize),
     Gap(usize),
+    /// On a bogie frame, by the car body.
+    YawMoment(usize, usize),
     Wheel(usize, usize, WheelQuantity),
     SumLV(usize),
     SumY(usize),
@@ -187,6 +194,12 @@ pub(crate) fn plan(model: &Model) -> Vec<(String, Source)> {
     }
     for (i, gap) in model.gaps.iter().enumerate() {
         plan.push((format!("{}.clearance", gap.name), Source::Gap(i)));
+    }
+    if let Some(car) = model.car_body() {
+        let bogies = (0..model.bodies.len()).filter(|i| *i != car && model.carried_by_axles(*i));
+        for bogie in bogies.filter(|i| model.links.iter().any(|link| link.joins(*i, car))) {
+            plan.push((format!("{}.yaw_moment", model.rigid(bogie).name), Source::YawMoment(bogie, car)));
+        }
     }
     if !model.wheelsets.is_empty() {
         for (i, part) in ["lateral", "vertical", "cross_level", "gauge"].into_iter().enumerate() {

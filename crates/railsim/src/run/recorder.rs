@@ -1,9 +1,11 @@
 //! Columns of samples, never filtered.
 
+use crate::connection::{Pair, Relative};
 use crate::contact::creep::Creepage;
 use crate::contact::geometry_table::Zone;
 use crate::dynamics::scratch::Wheel;
 use crate::dynamics::{Model, StateMap, VehicleSystem};
+use crate::math::Vec3;
 use crate::run::channel::{Source, WheelQuantity, plan};
 
 /// Gathers one row at each output time.
@@ -73,8 +75,8 @@ pub(crate) fn value(
             let sensor = &model.sensors[i];
             let k = &scratch.kinematics[sensor.body];
             let du = &dx[map.u(sensor.body)];
-            let a_T = crate::math::Vec3::new(du[0], du[1], du[2]) + (k.s_dot * k.frame.k_T).cross(&k.v_T);
-            let mut turn = crate::math::Vec3::new(du[3], du[4], du[5]);
+            let a_T = Vec3::new(du[0], du[1], du[2]) + (k.s_dot * k.frame.k_T).cross(&k.v_T);
+            let mut turn = Vec3::new(du[3], du[4], du[5]);
             if sensor.body >= map.bodies {
                 turn.y = 0.0; // a point on an axle box does not turn with the axle
             }
@@ -88,6 +90,7 @@ pub(crate) fn value(
             let between = a.R.tr_mul(&(b.r + b.R * gap.points[1] - a.r)) - gap.points[0];
             between.dot(&gap.direction)
         }
+        Source::YawMoment(bogie, car) => yaw_moment(system, x, bogie, car),
         Source::Wheel(w, side, quantity) => wheel_value(&scratch.wheels[w][side], quantity),
         Source::SumLV(w) => {
             let [left, right] = &scratch.wheels[w];
@@ -105,6 +108,18 @@ pub(crate) fn value(
             system.acting.as_ref().map_or(f64::NAN, |acting| acting.value(quantity, model, t, x, scratch))
         }
     }
+}
+
+/// Moment (N m) that all connections between two bodies put on the first, about its own z axis through its centre of mass.
+fn yaw_moment(system: &VehicleSystem<'_>, x: &[f64], on: usize, by: usize) -> f64 {
+    let pose = |body: usize| &system.scratch.kinematics[body].pose;
+    let between = system.model.links.iter().filter(|link| link.joins(on, by));
+    let moments = between.map(|link| {
+        let motion = Relative::between(pose(link.a), pose(link.b));
+        let pair = Pair::new(&link.wrench(&motion, x), &motion, &pose(link.a).R);
+        if link.a == on { pair.on_A.m } else { pair.on_B.m }
+    });
+    pose(on).R.column(2).dot(&moments.sum::<Vec3>())
 }
 
 /// Y/Q; 0 for a wheel without force. A flange that carries without vertical load gives a negative or infinite ratio: that
