@@ -67,7 +67,8 @@ fn numbers(v: &Vehicle) -> BTreeMap<String, f64> {
         put("dynamic_brake".into(), &[brake.max_effort]);
     }
     if let Some(brake) = &v.air_brake {
-        put("air_brake".into(), &[brake.apply_time]);
+        let times = [brake.apply_time, brake.release_time, brake.service_rate, brake.emergency_rate];
+        put("air_brake".into(), &times);
     }
     if let Some(brake) = &v.parking_brake {
         put("parking_brake".into(), &[brake.block_force]);
