@@ -261,6 +261,7 @@ def test_a_report_that_cannot_be_written_leaves_the_table_and_no_folder(
         assert last == "lmap: the report cannot be written to a/out: No space left on device"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
 @pytest.mark.parametrize("arguments", [["check", "sway", "-q"], ["check", "sway", "-q", "--json"], ["list"]])
 def test_a_full_disk_behind_stdout_is_one_message(toy: Path, arguments: list[str]) -> None:
@@ -276,6 +277,7 @@ def test_a_full_disk_behind_stdout_is_one_message(toy: Path, arguments: list[str
     assert (done.returncode, done.stderr) == (2, "lmap: stdout: No space left on device\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [".", "sub", "../beside"])
 def test_reports_of_two_clones_hold_the_same_paths_and_none_of_the_machine(
     lmap: Callable[..., Ran], toy: Path, monkeypatch: pytest.MonkeyPatch, place: str
