@@ -9,7 +9,7 @@ mod common;
 use common::{case, coco134, column};
 use railsim::body::coordinate;
 use railsim::contact::geometry_table::{MAX_CONTACTS, Zone};
-use railsim::dynamics::{SpeedProgram, VehicleSystem, compile, equilibrium};
+use railsim::dynamics::{Model, SpeedProgram, VehicleSystem, compile, equilibrium};
 use railsim::equipment::{Acting, Quantity};
 use railsim::integrator::System;
 use railsim::run::{Ended, Free, Law, Outcome, Outside, simulate, simulate_controlled};
@@ -85,32 +85,45 @@ fn a_lumped_train_takes_its_share_of_the_effort() {
     assert!((last("train.drawbar") - by_hand).abs() < 0.01 * by_hand);
 }
 
+/// The vehicle at rest, with its equipment; its contacts have not been released.
+fn at_rest(model: &Model) -> (VehicleSystem<'_>, Vec<f64>) {
+    let mut x = equilibrium::solve(model, 20.0, 0.0).unwrap();
+    let program = SpeedProgram { s: equilibrium::reference_s(model, 20.0), speed: 0.0, acceleration: 0.0 };
+    let mut system = VehicleSystem::new(model, program);
+    let acting = Acting::new(model, model.equipment.as_deref().unwrap());
+    x.resize(model.map().size() + acting.states(), 0.0);
+    system.acting = Some(Box::new(acting));
+    (system, x)
+}
+
+/// Moves the first axle to the right until tread and flange carry there, and releases its contacts.
+fn to_the_flange(model: &Model, system: &mut VehicleSystem<'_>, x: &mut [f64]) {
+    let axle = model.map().q(model.bodies.len()).start;
+    let mut dx = vec![0.0; x.len()];
+    let found = (0..400).any(|_| {
+        x[axle + 1] += 5e-5;
+        system.acting.as_ref().unwrap().release(model, x);
+        system.rhs(0.0, x, &mut dx);
+        system.scratch.wheels[0][1].contacts().iter().filter(|c| c.normal > 1e3).count() > 1
+    });
+    assert!(found, "no place with two contacts");
+}
+
 /// At rest every contact of a wheel is a spring: an axle on its flange, moved along by 5 um at no speed, is held at tread and flange.
 /// A steady law knows of no force there.
 #[test]
 fn at_rest_all_contacts_of_a_wheel_stick() {
     let case = case(&locomotive(json!({ "until": { "time": 1.0 } })));
     let model = compile::model(&case).unwrap();
-    let mut x = equilibrium::solve(&model, 20.0, 0.0).unwrap();
-    let program = SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 0.0, acceleration: 0.0 };
-    let mut system = VehicleSystem::new(&model, program);
-    let acting = Acting::new(&model, model.equipment.as_deref().unwrap());
-    x.resize(model.map().size() + acting.states(), 0.0);
+    let (mut system, mut x) = at_rest(&model);
     let axle = model.map().q(model.bodies.len()).start;
     let mut dx = vec![0.0; x.len()];
-    system.acting = Some(Box::new(acting));
-    // Outward until tread and flange carry.
     let held = |system: &VehicleSystem<'_>| -> Vec<f64> {
         let contacts = system.scratch.wheels[0][1].contacts();
         contacts.iter().filter(|c| c.normal > 1e3).map(|c| c.creep[0] / c.normal).collect()
     };
-    let found = (0..400).any(|_| {
-        x[axle + 1] += 5e-5;
-        system.acting.as_ref().unwrap().release(&model, &mut x);
-        system.rhs(0.0, &x, &mut dx);
-        held(&system).len() > 1
-    });
-    assert!(found, "no place with two contacts");
+    to_the_flange(&model, &mut system, &mut x);
+    system.rhs(0.0, &x, &mut dx);
     assert!(held(&system).iter().all(|share| share.abs() < 1e-9), "{:?}", held(&system));
     x[axle] += 5e-6;
     system.rhs(0.0, &x, &mut dx);
@@ -123,26 +136,15 @@ fn at_rest_all_contacts_of_a_wheel_stick() {
 fn a_flange_holds_what_it_held_when_the_tread_lifts() {
     let case = case(&locomotive(json!({ "until": { "time": 1.0 } })));
     let model = compile::model(&case).unwrap();
-    let mut x = equilibrium::solve(&model, 20.0, 0.0).unwrap();
-    let program = SpeedProgram { s: equilibrium::reference_s(&model, 20.0), speed: 0.0, acceleration: 0.0 };
-    let mut system = VehicleSystem::new(&model, program);
-    let acting = Acting::new(&model, model.equipment.as_deref().unwrap());
-    let own = model.map().size();
-    x.resize(own + acting.states(), 0.0);
-    let axle = model.map().q(model.bodies.len()).start;
+    let (mut system, mut x) = at_rest(&model);
+    let (own, axle) = (model.map().size(), model.map().q(model.bodies.len()).start);
     let mut dx = vec![0.0; x.len()];
-    system.acting = Some(Box::new(acting));
     let loaded = |system: &VehicleSystem<'_>| -> Vec<(Zone, f64)> {
         let contacts = system.scratch.wheels[0][1].contacts();
         contacts.iter().filter(|c| c.normal > 0.0).map(|c| (c.geometry.unwrap().zone, c.creep[0])).collect()
     };
-    let found = (0..400).any(|_| {
-        x[axle + 1] += 5e-5;
-        system.acting.as_ref().unwrap().release(&model, &mut x);
-        system.rhs(0.0, &x, &mut dx);
-        loaded(&system).len() > 1
-    });
-    assert!(found, "no place with two contacts");
+    to_the_flange(&model, &mut system, &mut x);
+    system.rhs(0.0, &x, &mut dx);
     // The right flange of the first axle has been drawn along by 2 um, the tread has not.
     x[own + 2 * (MAX_CONTACTS + Zone::Flange as usize)] += 2e-6;
     system.rhs(0.0, &x, &mut dx);

@@ -104,8 +104,8 @@ fn equipment(case: &Case, model: &Model) -> Result<Option<Equipment>> {
 fn faces(case: &Case, model: &Model) -> Result<Faces> {
     let body = match &model.speed_hold {
         Some(hold) => hold.body,
-        None => (0..model.bodies.len())
-            .max_by(|a, b| model.bodies[*a].mass.total_cmp(&model.bodies[*b].mass))
+        None => model
+            .car_body()
             .ok_or_else(|| Error::input(Fault::new(KeyPath::of("vehicle.body"), "none", "a car body")))?,
     };
     let places = ENDS.map(|end| {
